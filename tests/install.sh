@@ -75,6 +75,20 @@ need_all() {
     need_component clippy clippy
 }
 
+# choose_compiler: sets `cross` to a cargo whose compiler has the source of the standard library, which is not distributed in
+# compiled form for every target: rustup's or Debian's.
+choose_compiler() {
+    cross=(env RUSTC_BOOTSTRAP=1 cargo)
+    if rustup component add rust-src >/dev/null 2>&1; then return; fi
+    need /usr/share/doc/rustc-web rustc-web
+    need /usr/share/doc/cargo-web cargo-web
+    need /usr/share/doc/rust-web-src rust-web-src
+    # Debian's compiler comes without a linker for these targets.
+    local lld
+    lld=$(find "$(rustc --print sysroot)/lib/rustlib" -name rust-lld -type f | head -1)
+    cross=(env RUSTC_BOOTSTRAP=1 RUSTC=/usr/bin/rustc "PATH=$(dirname "$lld"):$PATH" /usr/bin/cargo)
+}
+
 as_root() {
     if [ "$(id -u)" -eq 0 ]; then
         env DEBIAN_FRONTEND=noninteractive "$@"

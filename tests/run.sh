@@ -50,12 +50,12 @@ sys.exit("these need a newer Rust than " + ours + ": " + ", ".join(newer) if new
 }
 
 check_packages() {
-    cargo package --workspace --exclude mindgap-tests --exclude mindgap-fuzz --exclude mindgap-python --no-verify --allow-dirty 2>&1 | tee "$log"
+    cargo package --workspace --exclude mindgap-tests --exclude mindgap-fuzz --exclude mindgap-python --exclude mindgap-browser --no-verify --allow-dirty 2>&1 | tee "$log"
     ! grep -q '^warning' "$log"
 }
 
 run_tests() {
-    cargo test --workspace --tests "${features[@]}" 2>&1 | tee "$log"
+    cargo test --workspace --tests --no-fail-fast "${features[@]}" 2>&1 | tee "$log"
     cargo test --workspace --doc "${features[@]}" 2>&1 | tee -a "$log"
 }
 
@@ -75,6 +75,7 @@ part compilation cargo test --workspace --tests "${features[@]}" --no-run
 part tests run_tests
 part python tests/python/run.sh
 part firmware tests/firmware/run.sh
+part browser tests/browser/run.sh target/debug/mindgap-under-test
 
 say "time"
 printf '%s\n' "${times[@]}"

@@ -14,6 +14,7 @@
 #   controllers through NXC's compiler      24                                        10,000
 #   fixed-point functions                   samples                                   every input
 #   broken NXT programs                     a few in fuzz/tests                       120 million instructions
+#   patched models in MuJoCo and PyBullet   their texts                               driven again
 #   fuzz targets                            kept inputs and 1,000 made of them each   libFuzzer, for an hour
 #
 # tests/run.sh leaves out more samples of the same kind. Each kind of fault and format keeps at least one; kills and failing disks
@@ -29,4 +30,14 @@ cargo test --workspace --tests --features mindgap-tests/mpi --no-fail-fast
 cargo run --release -p mindgap-tests --example exhaustive-fixed-point
 cargo run -p mindgap-tests --example fuzz-brick -- 120 7
 fuzz/run.sh 1
+two_worlds=${MINDGAP_SHARED:-../shared}/data/two-worlds
+if [ -d "$two_worlds" ]; then
+    # Both engines, from their packages.
+    python3 -m venv target/engines
+    target/engines/bin/pip install --quiet mujoco pybullet
+    cargo build --release
+    target/engines/bin/python tests/engines/two_worlds.py target/release/mindgap "$two_worlds"
+else
+    echo "skipped: models of two-worlds are not at $two_worlds"
+fi
 echo "all slow checks passed"

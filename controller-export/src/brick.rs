@@ -119,6 +119,8 @@ pub struct Report {
     pub instructions: u64,
     /// Drive of each motor at the end, ports A to C.
     pub motors: [Drive; motors::PORTS],
+    /// Whether the program read the sensor on each port, 1 to 4, or asked a digital sensor there.
+    pub ports_read: [bool; bus::PORTS],
     /// Files at the end, by name, truncated to the bytes written.
     pub files: BTreeMap<String, Vec<u8>>,
     /// Peak memory of clump records, values and arrays, in bytes.
@@ -334,6 +336,7 @@ pub fn run(program: &Program, world: &mut dyn World, config: &RunConfig) -> Repo
         ended_ms: brick.t_ms,
         instructions: brick.instructions,
         motors,
+        ports_read: brick.ports.each_ref().map(Port::is_read),
         files: brick.flash.into_files(),
         pool_bytes: clump_bytes + brick.memory.peak_bytes(),
     }
@@ -365,17 +368,6 @@ impl Brick<'_, '_> {
             let idle_ms = next_ms - self.t_ms - 1;
             self.overdrawn = self.overdrawn.saturating_sub(idle_ms.saturating_mul(config.instructions_per_ms));
             self.t_ms = next_ms;
-        }
-    }
-
-    fn end_at_limits(&mut self) {
-        for port in 0..motors::PORTS {
-            if self.motors[port].has_limit() {
-                let rotation_deg = self.world.rotation_deg(port, self.t_ms);
-                if let Some(drive) = self.motors[port].end_at_limit(rotation_deg) {
-                    self.drive(port, drive);
-                }
-            }
         }
     }
 

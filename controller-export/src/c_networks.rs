@@ -9,14 +9,15 @@ use crate::tabulated::{Tabulated, lines};
 
 const NETWORK: &str = include_str!("c_networks/network.h");
 
-/// Returns a header that defines one function per network.
+/// Returns a header that defines one function per network, followed by `more`: nothing, or their
+/// [monitor](crate::c_monitor).
 ///
 /// ```
 /// use mindgap_controller_export::c_networks::c_networks;
 ///
-/// assert!(c_networks(&[]).contains("#ifndef MINDGAP_NETWORKS_H"));
+/// assert!(c_networks(&[], "").contains("#ifndef MINDGAP_NETWORKS_H"));
 /// ```
-pub fn c_networks(networks: &[Tabulated]) -> String {
+pub fn c_networks(networks: &[Tabulated], more: &str) -> String {
     let mut tables =
         table("network_steps", "2^(i/32) - 1 with 32 fractional bits, unsigned.", &STEPS.map(|s| s as i32));
     let mut functions = String::new();
@@ -54,7 +55,7 @@ pub fn c_networks(networks: &[Tabulated]) -> String {
          #define NETWORK_READ(address) (*(address))\n\
          #endif\n\
          \n\
-         {tables}\n{NETWORK}{functions}\n#endif\n"
+         {tables}\n{NETWORK}{functions}{more}\n#endif\n"
     )
 }
 

@@ -31,11 +31,11 @@ const SCRIPT_STEP_BYTES: u32 = 4;
 /// Largest number of steps of a script for which there is memory.
 const MAX_SCRIPT_STEPS: usize = 1_000;
 /// Number of consecutive steps without an echo after which the robot looks for one.
-const MAX_UNSEEN_STEPS: u16 = 2;
+pub(crate) const MAX_UNSEEN_STEPS: u16 = 2;
 /// Additional free distance ahead required after a turn.
-const PAST_CORNER_CM: u16 = 20;
+pub(crate) const PAST_CORNER_CM: u16 = 20;
 /// Power in the last step of a turn away from an object.
-const PAST_CORNER_POWER: u16 = 15;
+pub(crate) const PAST_CORNER_POWER: u16 = 15;
 /// Number of seeds. It leaves room for a thousand runs within the generator's 31 bits.
 const SEEDS: u32 = 1_000_000_000;
 
@@ -157,7 +157,8 @@ pub fn budget(options: &CollectOptions) -> Budget {
     Budget::new(cost.plus(safety_cost(options.safety)), options.step_ms, Some(steps(&options.commands)))
 }
 
-fn check(commands: &Commands) -> Result<(), ExportError> {
+/// Returns an error for commands without a step, with too many of them, or with an impossible distance.
+pub(crate) fn check(commands: &Commands) -> Result<(), ExportError> {
     let out_of_range = |name, value, range| Err(ExportError::OutOfRange { name, value, range });
     match commands {
         Commands::Random { steps: 0, .. } => out_of_range("steps", 0, "1..65535"),

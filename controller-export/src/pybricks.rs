@@ -1,4 +1,4 @@
-//! A controller as a MicroPython program for hubs with Pybricks firmware: SPIKE, Technic and EV3.
+//! A controller as a MicroPython program for hubs with Pybricks firmware: NXT, EV3, SPIKE and Technic.
 //!
 //! Its class `Robot` is the driver, the only part that depends on the hub's motors and sensor.
 
@@ -8,7 +8,10 @@ use crate::error::ExportError;
 use crate::onboard::FAILED_STEPS_TO_STOP;
 use crate::origin::Origin;
 
-const DRIVER: &str = include_str!("pybricks/driver.py");
+/// The driver, which all programs for these hubs share.
+pub(crate) const DRIVER: &str = include_str!("pybricks/driver.py");
+/// The start of all these programs, after their function `run`.
+pub(crate) const MAIN: &str = include_str!("pybricks/main.py");
 const RUN: &str = include_str!("pybricks/run.py");
 
 /// Returns the controller as a MicroPython program.
@@ -36,15 +39,6 @@ pub fn program(controller: &Controller, origin: &Origin) -> Result<String, Expor
          # on the stated side of a tuple's threshold starts the next tuple. The robot stops after the sixth, after {max_steps} steps,\n\
          # or when the sensor is dead; nothing moves unless the sensor answers. The hub's button stops it at once.\n\
          {origin}\n\
-         from pybricks.parameters import Direction, Port\n\
-         from pybricks.pupdevices import Motor, UltrasonicSensor  # on an EV3: pybricks.ev3devices\n\
-         from pybricks.tools import StopWatch, wait\n\
-         \n\
-         LEFT = Port.A\n\
-         RIGHT = Port.B\n\
-         SONAR = Port.C  # on an EV3: Port.S4\n\
-         NO_ECHO_MM = 2000  # the sensor's code; on an EV3: 2550\n\
-         \n\
          STEP_MS = {step_ms}\n\
          MAX_STEPS = {max_steps}\n\
          FAILED_STEPS_TO_STOP = {FAILED_STEPS_TO_STOP}  # in a row\n\
@@ -53,7 +47,7 @@ pub fn program(controller: &Controller, origin: &Origin) -> Result<String, Expor
          # Left power, right power, side of the threshold on which the tuple ends, threshold in cm.\n\
          TUPLES = (\n{rows})\n"
     );
-    Ok([&head, DRIVER, RUN].join("\n\n"))
+    Ok([&head, DRIVER, RUN, "", MAIN].join("\n"))
 }
 
 fn row((number, tuple): (usize, &Tuple)) -> String {

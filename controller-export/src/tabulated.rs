@@ -15,7 +15,7 @@ const WEIGHTS_PER_LINE: usize = 8;
 /// use mindgap_core::fixed_network::FixedNetwork;
 ///
 /// fn header(forward: &FixedNetwork<2>) -> String {
-///     c_networks(&[Tabulated::new("forward", "Centimetres.", ["left", "right"], forward)])
+///     c_networks(&[Tabulated::new("forward", "Centimetres.", ["left", "right"], forward)], "")
 /// }
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -7,13 +7,14 @@
 //! logarithm of a term of 1000 cm is 0.005 cm, and a value network sums twenty of them.
 
 use core::array;
+use core::hint::black_box;
 
 use fixed::types::{I6F26, I16F16, I38F26};
 use fixed::{FixedI32, Saturating};
 
 use crate::fixed_point::{Q6_26, Q16_16, exp2_of_sum, log2, product, saturate};
 use crate::folded::{Power, PowerSum, Sign};
-use crate::network::{Activation, MAX_HALF, Term};
+use crate::network::{Activation, MAX_HALF};
 
 /// A folded network in fixed point, with `N` inputs and room for `POWERS` product units.
 ///
@@ -147,7 +148,7 @@ impl<const N: usize, const POWERS: usize> FixedNetwork<N, POWERS> {
 
     /// Returns the output for a sample that was scaled by this network or by another with equal `inputs`.
     pub fn evaluate_scaled(&self, scaled: &ScaledInputs<N>) -> Output {
-        let sum = self.sum.evaluate(&scaled.x, &scaled.log2_x);
+        let sum = add_powers(&self.sum.powers, self.sum.affine(&scaled.x), &scaled.log2_x);
         Output { value: self.activation.apply(self.unscaled(sum)).0, clamped: scaled.clamped }
     }
 
@@ -159,20 +160,24 @@ impl<const N: usize, const POWERS: usize> FixedNetwork<N, POWERS> {
     }
 }
 
-impl<const N: usize> Term<Q6_26, N> for Power<I6F26, N> {
-    #[inline(always)]
-    fn add_to(&self, sum: Q6_26, log2_x: &[Q6_26; N]) -> Q6_26 {
-        let term = product_of_powers(self.log2_weight, log2_x, &self.exponents);
-        match self.sign {
+/// Returns `start` plus all product units, added from the first to the last. One copy serves all networks with `N` inputs.
+#[inline(never)]
+fn add_powers<const N: usize>(powers: &[Power<I6F26, N>], start: Q6_26, log2_x: &[Q6_26; N]) -> Q6_26 {
+    let mut sum = start;
+    for Power { exponents, log2_weight, sign } in powers {
+        // If the compiler knew that the logarithms stay the same, it would widen them ahead of the loop, and then multiply 64
+        // bits by 64.
+        let term = product_of_powers(*log2_weight, black_box(log2_x), exponents);
+        sum = match sign {
             Sign::Plus => sum + term,
             Sign::Minus => sum - term,
-        }
+        };
     }
+    sum
 }
 
-/// Returns 2^(`start` + Σ `logarithms` · `exponents`), where the sum is exact. It must not be inlined: in a loop over
-/// product units the compiler would widen the logarithms ahead of the loop and then multiply 64 bits by 64.
-#[inline(never)]
+/// Returns 2^(`start` + Σ `logarithms` · `exponents`), where the sum is exact.
+#[inline(always)]
 fn product_of_powers<const N: usize>(start: I6F26, logarithms: &[Q6_26; N], exponents: &[I6F26; N]) -> Q6_26 {
     // A logarithm is between -10 and 5, so a product has at most 61 bits.
     const { assert!(N <= 4, "more products might not fit 64 bits") };

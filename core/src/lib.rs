@@ -9,6 +9,7 @@
 //!   [`Scalar`](scalar::Scalar).
 //! * [`fixed_network`]: folded networks in fixed point, built on the numbers and functions of [`fixed_point`].
 //! * [`chance`]: random draws in fixed point: whether an echo returns, and the noise of a reading.
+//! * [`monitor`]: evidence on board that a robot is no longer what its simulator knows.
 //! * [`maths`]: powers, logarithms and sines in `f32`, with the same bits on every machine.
 //! * [`scalar`], [`pair`]: the numbers that networks are evaluated on.
 //! * [`limits`]: the memory of an NXT-class brick, checked when this crate is compiled.
@@ -24,6 +25,7 @@ pub mod fixed_point;
 pub mod folded;
 pub mod limits;
 pub mod maths;
+pub mod monitor;
 pub mod network;
 pub mod pair;
 pub mod scalar;

@@ -8,7 +8,8 @@ use std::str;
 use mindgap_applications::challenge::Folder;
 use mindgap_applications::challenge::score::score;
 use mindgap_applications::challenge::seal::{Published, Sealed};
-use mindgap_applications::closed_loop::state::State;
+use mindgap_applications::closed_loop::Job;
+use mindgap_applications::closed_loop::state::{FILE, State};
 use mindgap_built_in_robot::effects::ActiveEffect;
 use mindgap_built_in_robot::{default_robot, four_obstacles};
 use mindgap_command as cli;
@@ -16,12 +17,13 @@ use mindgap_command::kinds::{CALIBRATION, CHECKPOINT, CONTROLLER, FORMULA, PAGE,
 use mindgap_controller_export::names::BrickName;
 use mindgap_controller_export::wiring::{MotorPort, SensorPort};
 use mindgap_files as files;
+use mindgap_foundations::executor::Serial;
 use mindgap_import::bag::{self, Choice};
 use mindgap_import::brick_log::BrickLog;
+use mindgap_import::contents::Contents;
 use mindgap_import::mapping::Mapping;
+use mindgap_import::statements::Statements;
 use mindgap_import::streams;
-use mindgap_import::track::Track;
-use mindgap_import::units::Units;
 use mindgap_logs::controller_file::ControllerFile;
 use mindgap_logs::inspection::Inspection;
 use mindgap_logs::{Logs, Robot, Run, Scene, readings, world_script};
@@ -32,6 +34,7 @@ use mindgap_models::effects::own::variables::Stage;
 use mindgap_models::simulator::Simulator;
 use mindgap_workers::checkpoint::{Checkpoint, CreateFile};
 use mindgap_workers::task::Task;
+use serde_json::Value;
 
 use crate::{Target, as_file};
 
@@ -42,24 +45,21 @@ pub const TARGETS: &[Target] = &[
     Target { name: "robot", feed: robot },
     Target { name: "controller", feed: |bytes| drop(as_file("c.toml", bytes, ControllerFile::read)) },
     Target { name: "simulator", feed: |bytes| drop(as_file("s.json", bytes, Simulator::read)) },
-    Target { name: "loop-state", feed: |bytes| drop(serde_json::from_slice::<State>(bytes)) },
+    Target { name: "loop-state", feed: loop_state },
     Target { name: "own-effects", feed: |bytes| drop(as_file("e.toml", bytes, own::read)) },
     Target { name: "expression", feed: expression },
     Target {
         name: "bag",
-        feed: |bytes| drop(as_file("b.mcap", bytes, |path| bag::recording(path, &Choice::default(), 0.0))),
+        feed: |bytes| {
+            drop(as_file("b.mcap", bytes, |path| bag::recordings(&[path.into()], &Choice::default(), &[], |_| ())))
+        },
     },
-    Target {
-        name: "track",
-        feed: |bytes| drop(as_file("t.csv", bytes, |path| Track::read(path, &Units::default(), &default_robot()))),
-    },
+    Target { name: "track", feed: |bytes| drop(as_file("t.csv", bytes, Contents::of_table)) },
     Target { name: "brick-log", feed: |bytes| drop(as_file("l.csv", bytes, |path| BrickLog::read(path, |_| {}))) },
     Target {
         name: "streams",
         feed: |bytes| {
-            drop(as_file("s.csv", bytes, |path| {
-                streams::recordings(&[path.into()], &Mapping::default(), &Units::default(), |_, _| ())
-            }))
+            drop(as_file("s.csv", bytes, |path| streams::recordings(&[path.into()], &Statements::default(), |_, _| ())))
         },
     },
     Target { name: "mapping", feed: |bytes| drop(as_file("m.toml", bytes, Mapping::read)) },
@@ -71,7 +71,7 @@ pub const TARGETS: &[Target] = &[
     Target { name: "defaults", feed: defaults },
     Target { name: "answer", feed: answer },
     Target { name: "seal", feed: |bytes| drop(as_file("sealed.json", bytes, files::read_json::<Vec<Sealed>>)) },
-    Target { name: "cases", feed: |bytes| drop(as_file("cases.csv", bytes, files::read_csv::<Published>)) },
+    Target { name: "cases", feed: cases },
     Target { name: "added", feed: added },
     Target { name: "checkpoint", feed: checkpoint },
     Target { name: "kinds", feed: kinds },
@@ -127,6 +127,54 @@ fn defaults(bytes: &[u8]) {
         let call = ["mindgap".into(), "check".into(), logs.into_os_string()];
         let _ = cli::defaults::with_defaults(&cli::command(), call.to_vec());
         fs::remove_file(path).expect("a file");
+    });
+}
+
+/// The state in a loop's folder, which names only files of this folder.
+fn loop_state(bytes: &[u8]) {
+    as_file("scene.toml", b"", |scene| {
+        let folder = scene.with_file_name("loop");
+        let job = Job {
+            executor: &Serial,
+            folder: &folder,
+            simulator: scene,
+            scene,
+            start: 1,
+            trials: 1,
+            max_steps: 1,
+            known: &[],
+            seed: 1,
+        };
+        let file = folder.join(FILE);
+        let _ = fs::remove_dir_all(&folder);
+        fs::create_dir(&folder).expect("a folder");
+        State::open(&job).and_then(|fresh| fresh.write(&folder)).expect("an empty folder");
+        let fresh: Value = files::read_json(&file).expect("its own file");
+        // Any other value belongs to another loop.
+        let state = serde_json::from_slice::<Value>(bytes).map(|mut state| {
+            if let Some(state) = state.as_object_mut() {
+                for key in ["schema", "job"] {
+                    state.insert(key.into(), fresh[key].clone());
+                }
+            }
+            state.to_string().into_bytes()
+        });
+        fs::write(&file, state.unwrap_or_else(|_| bytes.to_vec())).expect("a file");
+        for trial in State::open(&job).map_or_else(|_| Vec::new(), |state| state.trials) {
+            for name in [&trial.controller, &trial.log] {
+                assert!(files::in_folder(&folder, name).is_ok() && name.starts_with("trial-"), "{name}");
+            }
+        }
+    });
+}
+
+/// The list of a challenge's cases, whose names lie in its folder.
+fn cases(bytes: &[u8]) {
+    as_file("cases.csv", bytes, |path| {
+        let folder = Folder(path.parent().expect("a folder"));
+        for Published { case, robot, .. } in folder.published().unwrap_or_default() {
+            assert!(!case.contains('/') && !robot.contains('/') && folder.case(&case).file_name().is_some());
+        }
     });
 }
 

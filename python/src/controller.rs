@@ -57,7 +57,7 @@ impl Controller {
     /// The contents of its file.
     #[getter]
     fn facts<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let ControllerFile { controller, origin } = &self.file;
+        let ControllerFile { controller, origin, .. } = &self.file;
         let (step_ms, max_steps) = (controller.step_ms, controller.max_steps);
         convert::facts(py, &Facts { step_ms, max_steps, tuple: &controller.tuples, origin: origin.as_ref() })
     }
@@ -99,8 +99,11 @@ impl Evolution {
     /// The controller.
     #[getter]
     fn controller(&self) -> Controller {
-        let file =
-            ControllerFile { controller: self.answered.evolved.controller.clone(), origin: Some(self.origin.clone()) };
+        let file = ControllerFile {
+            controller: self.answered.evolved.controller.clone(),
+            sensors: Default::default(),
+            origin: Some(self.origin.clone()),
+        };
         Controller { file, name: "a controller from Python".into() }
     }
 

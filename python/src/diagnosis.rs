@@ -12,6 +12,7 @@ use mindgap_files as files;
 use mindgap_models::effects::own;
 use mindgap_models::simulator;
 use mindgap_models::simulator::textbook;
+use mindgap_pages::diagnosis::comparison::Comparison;
 use mindgap_pages::diagnosis::{Source, Subject, page};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
@@ -87,11 +88,18 @@ impl Diagnosis {
     fn page(&self, py: Python<'_>) -> PyResult<Page> {
         Page::made(py.detach(|| {
             let Answered { findings, logs } = &self.answered;
-            let written = self.folder.as_ref().map_or(Ok(None), |folder| files::days_written(folder))?;
+            let written = files::days_written(self.folder.as_slice())?;
             let [simulator, name] = self.names.clone();
             let source = Source { simulator, logs: name, written, seed: self.method.seed };
             let baseline = self.request().baseline(logs)?;
-            page(&Subject { findings, logs, baseline: &baseline, catalogue: self.method.catalogue, source })
+            page(&Subject {
+                findings,
+                logs,
+                baseline: &baseline,
+                catalogue: self.method.catalogue,
+                source,
+                comparison: Comparison::default(),
+            })
         }))
     }
 

@@ -50,7 +50,7 @@ impl Evaluation {
     /// The accuracy of each network, as a frame.
     #[getter]
     fn networks<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let Networks { turn, forward, lateral, echo_probability, echo_value } = &self.evaluation.networks;
+        let Networks { turn, forward, lateral, echo_probability, echo_value, .. } = &self.evaluation.networks;
         let values = [("turn", turn), ("forward", forward), ("lateral", lateral), ("echo_value", echo_value)];
         let value = |(network, value): (&'static str, &Option<Value>)| {
             let Value { r2, mse, mae_cm, n, .. } = value.as_ref()?;

@@ -1,6 +1,7 @@
 /* Runs an image on an ATmega328P at 16 MHz: `run IMAGE.elf [PULSE_US...]`. The UART is standard input and output, and the
  * run ends when the processor sleeps with interrupts off. With pulses, an HC-SR04 with its trigger on pin 7 and its echo on
- * pin 6 answers with them; 0 means that there is no sensor. Then every change of the echo and of the brake and direction pins
+ * pin 6 answers with them; 0 means that there is no sensor, -1 a pulse
+ * that lasts until the line is pulled low. Then every change of the echo and of the brake and direction pins
  * is printed with its time in microseconds, and the run ends with the first line that the image sends. */
 #include <simavr/avr_ioport.h>
 #include <simavr/avr_uart.h>
@@ -9,12 +10,13 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-enum { FLIGHT_US = 450 };
+enum { FLIGHT_US = 450, ECHO_BIT = 6 };
 
 static avr_t *avr;
 static avr_irq_t *uart_in, *echo;
 static int can_receive;
 static int has_sent_line;
+static int is_held;
 static char **pulses;
 
 static void discard_log(avr_t *avr, const int level, const char *format, va_list arguments) {}
@@ -34,20 +36,32 @@ static avr_cycle_count_t end_pulse(avr_t *avr, avr_cycle_count_t when, void *con
 }
 
 static avr_cycle_count_t begin_pulse(avr_t *avr, avr_cycle_count_t when, void *context) {
+  int32_t pulse_us = *(int32_t *)context;
   avr_raise_irq(echo, 1);
-  avr_cycle_timer_register_usec(avr, *(uint32_t *)context, end_pulse, NULL);
+  is_held = pulse_us < 0;
+  if (!is_held) {
+    avr_cycle_timer_register_usec(avr, (uint32_t)pulse_us, end_pulse, NULL);
+  }
   return 0;
+}
+
+/* An output that the image drives low frees a held line. */
+static void on_direction(struct avr_irq_t *irq, uint32_t outputs, void *context) {
+  if (is_held && outputs & 1 << ECHO_BIT) {
+    is_held = 0;
+    avr_raise_irq(echo, 0);
+  }
 }
 
 /* The end of the trigger is a request. The last pulse is repeated for ever. */
 static void on_trigger(struct avr_irq_t *irq, uint32_t level, void *context) {
-  static uint32_t pulse_us;
+  static int32_t pulse_us;
   if (level == 0 && irq->value == 1) {
-    pulse_us = (uint32_t)atoi(*pulses);
+    pulse_us = atoi(*pulses);
     if (pulses[1] != NULL) {
       pulses++;
     }
-    if (pulse_us > 0) {
+    if (pulse_us != 0) {
       avr_cycle_timer_register_usec(avr, FLIGHT_US, begin_pulse, &pulse_us);
     }
   }
@@ -82,12 +96,13 @@ int main(int count, char **arguments) {
   avr_irq_register_notify(avr_io_getirq(avr, AVR_IOCTL_UART_GETIRQ('0'), UART_IRQ_OUT_XOFF), on_can_receive, NULL);
   pulses = arguments + 2;
   if (*pulses != NULL) {
-    echo = avr_io_getirq(avr, AVR_IOCTL_IOPORT_GETIRQ('D'), 6);
+    echo = avr_io_getirq(avr, AVR_IOCTL_IOPORT_GETIRQ('D'), ECHO_BIT);
     watch('D', 7, on_trigger, NULL);
+    watch('D', IOPORT_IRQ_DIRECTION_ALL, on_direction, NULL);
     /* Overrides the pull-ups: a connected sensor holds its line low. */
-    avr_ioport_external_t lines = {.name = 'D', .mask = 1 << 6 | 1 << 2, .value = (atoi(*pulses) == 0) << 6 | 1 << 2};
+    avr_ioport_external_t lines = {.name = 'D', .mask = 1 << ECHO_BIT | 1 << 2, .value = (atoi(*pulses) == 0) << ECHO_BIT | 1 << 2};
     avr_ioctl(avr, AVR_IOCTL_IOPORT_SET_EXTERNAL('D'), &lines);
-    watch('D', 6, on_pin, "echo");
+    watch('D', ECHO_BIT, on_pin, "echo");
     watch('B', 1, on_pin, "left-brake");
     watch('B', 4, on_pin, "left-direction");
     watch('B', 0, on_pin, "right-brake");

@@ -8,7 +8,6 @@ use mindgap_diagnosis::verdict::NamedEffect;
 use mindgap_diagnosis::{Diagnosis, diagnose};
 use mindgap_logs::Logs;
 use mindgap_models::simulator::kinematic;
-use serde_json::Value;
 
 fn main() -> std::process::ExitCode {
     println!("| logs | verdict | what the gap is made of, share (95 %) | closed of what can be (95 %) |");
@@ -32,10 +31,12 @@ fn row(folder: &Path, diagnosis: &Diagnosis) -> String {
     let name = folder.file_name().unwrap_or_default().to_string_lossy();
     let verdict = serde_json::to_value(diagnosis.verdict).unwrap_or_default();
     let parts: Vec<String> = diagnosis.budget.iter().map(|part| cell(part, &diagnosis.effects)).collect();
-    let closed = diagnosis.reduction.as_ref().map_or(String::new(), |reduction| {
-        let [low, high] = reduction.whole.ci95.map(|share| 100.0 * share);
-        format!("{:.0} % ({low:.0} to {high:.0})", 100.0 * reduction.whole.reducible_closed)
+    let closed = diagnosis.reduction.as_ref().and_then(|reduction| {
+        let (closed, ends) = reduction.whole.reducible_closed.zip(reduction.whole.ci95)?;
+        let [low, high] = ends.map(|share| 100.0 * share);
+        Some(format!("{:.0} % ({low:.0} to {high:.0})", 100.0 * closed))
     });
+    let closed = closed.unwrap_or_default();
     format!("| {name} | {} | {} | {closed} |", verdict.as_str().unwrap_or_default(), parts.join("; "))
 }
 
@@ -47,9 +48,5 @@ fn cell(part: &Part, effects: &[NamedEffect]) -> String {
 }
 
 fn strength(effect: &NamedEffect) -> String {
-    let number = |(name, value): (&String, &Value)| {
-        let between = effect.intervals.get(name).map_or(String::new(), |ends| format!(" {ends}"));
-        format!("{name} {value}{between}")
-    };
-    format!(" ({})", effect.parameters.iter().map(number).collect::<Vec<String>>().join(", "))
+    format!(" ({})", effect.strength())
 }

@@ -9,6 +9,7 @@ cd "$(dirname "$0")"
 TARGETS=(thumbv6m-none-eabi thumbv7em-none-eabi armv4t-none-eabi thumbv4t-none-eabi)
 MAX_FLASH=12288 # bytes of the image `bare`: code, five networks, one controller
 MAX_STACK=1023  # bytes
+MAX_MONITOR_FLASH=5120 # bytes of the image `bare_monitor`: start-up code, and code and constants of the monitor without networks
 DEFMT_PRINT=1.2.0
 logs=$(mktemp -d)
 trap 'rm -rf "$logs"' EXIT
@@ -21,6 +22,9 @@ max_instructions() {
   *) echo 16000 ;;
   esac
 }
+
+# Largest number of instructions of a step of the monitor, without the networks.
+MAX_MONITOR_INSTRUCTIONS=2500
 
 main() {
   install_tools
@@ -53,11 +57,24 @@ check() {
   ((instructions > 0 && instructions <= $(max_instructions "$target"))) ||
     fail "$target: needs more than $(max_instructions "$target") instructions"
 
+  [[ $target != thumbv6m-* ]] || check_monitor "$target" "$folder/bare_monitor"
+
   # The check for panics must be able to fail.
   if build --target "$target" --bin panic_free --features reachable-panic 2>"$logs/panic.txt"; then
     fail "$target: links although a panic is reachable"
   fi
   grep -q a_panic_is_reachable "$logs/panic.txt" || fail "$target: the image with a panic fails for another reason"
+}
+
+# Measures the monitor on the smallest processor.
+check_monitor() {
+  local target=$1 image=$2 flash instructions
+  flash=$(size "$image" | awk 'NR == 2 { print $1 + $2 }')
+  instructions=$(max_counted "$target" "$image")
+  echo "$target: the monitor takes $flash bytes of flash, at most $instructions instructions per step"
+  ((flash > 0 && flash <= MAX_MONITOR_FLASH)) || fail "$target: the monitor needs more than $MAX_MONITOR_FLASH bytes"
+  ((instructions > 0 && instructions <= MAX_MONITOR_INSTRUCTIONS)) ||
+    fail "$target: the monitor needs more than $MAX_MONITOR_INSTRUCTIONS instructions"
 }
 
 # Builds the example project and runs it on a board of QEMU.
@@ -69,20 +86,6 @@ check_example() {
     fail "core/examples/rtic: ended with $?"
   [ "$(tail -1 "$logs/example.txt")" = Finished ] || fail "core/examples/rtic: the controller did not finish"
   echo "core/examples/rtic: the controller finished"
-}
-
-# Selects a compiler with the source of the core library, which is not distributed in compiled form for armv4t: rustup's
-# or Debian's.
-choose_compiler() {
-  cross=(env RUSTC_BOOTSTRAP=1 cargo)
-  if rustup component add rust-src >/dev/null 2>&1; then return; fi
-  need /usr/share/doc/rustc-web rustc-web
-  need /usr/share/doc/cargo-web cargo-web
-  need /usr/share/doc/rust-web-src rust-web-src
-  # Debian's compiler comes without a linker for these targets.
-  local lld
-  lld=$(find "$(rustc --print sysroot)/lib/rustlib" -name rust-lld -type f | head -1)
-  cross=(env RUSTC_BOOTSTRAP=1 RUSTC=/usr/bin/rustc "PATH=$(dirname "$lld"):$PATH" /usr/bin/cargo)
 }
 
 build() {

@@ -27,7 +27,7 @@ const fn fault(what: &'static str, id: &'static str, handling: Handling, put: fn
 pub const RUN: usize = 4;
 
 /// Faults of motion: in commands, poses and clocks.
-pub const MOTION: [Fault; 20] = [
+pub const MOTION: [Fault; 22] = [
     fault("commands in -1..1", "command_fraction", Handling::Corrected, |logs| {
         each(logs, |row| (row.left, row.right) = (row.left / 100.0, row.right / 100.0));
     }),
@@ -94,13 +94,41 @@ pub const MOTION: [Fault; 20] = [
         copy.name = "run-999".into();
         logs.runs.push(copy);
     }),
+    fault("commands negated in some runs", "commands_reversed", Handling::Excluded, |logs| {
+        some_runs(logs, |row| (row.left, row.right) = (-row.left, -row.right));
+    }),
+    fault("left and right exchanged in some runs", "left_right_exchanged", Handling::Excluded, |logs| {
+        some_runs(logs, |row| (row.left, row.right) = (row.right, row.left));
+    }),
 ];
 
 /// Faults that only readings of walls show.
-pub const SONAR: [Fault; 8] = [
+pub const SONAR: [Fault; 15] = [
     fault("readings in millimetres", "echo_unit", Handling::Corrected, |logs| readings(logs, |cm| cm * 10.0)),
     fault("readings in metres", "echo_unit", Handling::Corrected, |logs| readings(logs, |cm| cm / 100.0)),
     fault("readings in inches", "echo_unit", Handling::Corrected, |logs| readings(logs, |cm| cm / 2.54)),
+    fault("readings in microseconds", "echo_unit", Handling::Corrected, |logs| readings(logs, |cm| cm * 58.3)),
+    fault("the largest reading for none", "echo_none_number", Handling::Corrected, |logs| {
+        let max_cm = logs.robot.ultrasonic.map_or(0.0, |sensor| sensor.max_cm);
+        none(logs, max_cm);
+    }),
+    fault("one reading in every row", "echo_stuck", Handling::Reported, |logs| {
+        each(logs, |row| row.echo_cm = Some(100.0))
+    }),
+    fault("readings frozen in the second half of runs", "echo_stuck", Handling::Reported, |logs| {
+        for run in &mut logs.runs {
+            let half = run.rows.len() / 2;
+            let last = (0..half).rev().find_map(|k| run.rows.at(k).echo_cm).or(Some(80.0));
+            (half..run.rows.len()).for_each(|k| run.rows.edit(k, |row| row.echo_cm = last));
+        }
+    }),
+    fault("readings that end at 100", "echo_saturated", Handling::Reported, |logs| readings(logs, |cm| cm.min(100.0))),
+    fault("arena of half the width", "path_outside_arena", Handling::Reported, |logs| {
+        logs.scene.arena_cm.iter_mut().for_each(|size_cm| size_cm.x /= 2.0);
+    }),
+    fault("a wall 20 cm nearer than on the map", "wall_moved", Handling::Reported, |logs| {
+        logs.scene.arena_cm.iter_mut().for_each(|size_cm| size_cm.x += 20.0);
+    }),
     fault("255 for none", "echo_none_number", Handling::Corrected, |logs| none(logs, 255.0)),
     fault("0 for none", "echo_none_number", Handling::Corrected, |logs| none(logs, 0.0)),
     fault("inf for none", "echo_none_number", Handling::Corrected, |logs| none(logs, 1e7)),
@@ -140,9 +168,10 @@ pub fn assert_found(good: &Logs, fault: &Fault) {
     let put_in: Vec<(String, usize)> = put_in.collect();
     let places = found.rows_by_run.iter().flat_map(|place| place.rows.iter().map(|row| (place.run.clone(), *row)));
     let found_rows: Vec<(String, usize)> = places.collect();
-    assert!(put_in.iter().all(|row| found_rows.contains(row)), "{what}: {put_in:?} but {found_rows:?}");
+    let missed: Vec<_> = put_in.iter().filter(|row| !found_rows.contains(row)).collect();
+    assert!(missed.is_empty(), "{what}: {missed:?} not found");
     // A zero is the same in all units.
-    let is_whole = ["command", "clock"].iter().any(|kind| fault.id.starts_with(kind));
+    let is_whole = ["command", "clock", "left_right"].iter().any(|kind| fault.id.starts_with(kind));
     assert!(is_whole || found_rows.len() == put_in.len(), "{what}: {put_in:?} but {found_rows:?}");
     for run in &after.logs.runs {
         let as_it_was = before.logs.runs.iter().find(|other| other.name == run.name).expect("a run of the good logs");
@@ -172,6 +201,11 @@ fn are_equal(a: &Row, b: &Row) -> bool {
 
 fn each(logs: &mut Logs, mut change: impl FnMut(&mut Row)) {
     logs.runs.iter_mut().for_each(|run| run.rows.edit_each(&mut change));
+}
+
+/// Changes every row of every fifth run.
+fn some_runs(logs: &mut Logs, mut change: impl FnMut(&mut Row)) {
+    logs.runs.iter_mut().step_by(5).for_each(|run| run.rows.edit_each(&mut change));
 }
 
 fn poses(logs: &mut Logs, change: impl Fn(&mut Pose)) {

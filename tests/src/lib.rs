@@ -14,5 +14,6 @@ pub mod module_order;
 pub mod modules;
 pub mod nbc;
 pub mod plausible_networks;
+pub mod range_sensors;
 pub mod rooms;
 pub mod ros_bags;

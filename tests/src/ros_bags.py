@@ -51,6 +51,18 @@ SCHEMAS = {
     + "float32 max_range\nfloat32 range\n"
     + HEADER
     + STAMP,
+    "sensor_msgs/msg/JointState": "std_msgs/Header header\nstring[] name\nfloat64[] position\nfloat64[] velocity\n"
+    + "float64[] effort\n"
+    + HEADER
+    + STAMP,
+    "sensor_msgs/msg/Imu": "std_msgs/Header header\ngeometry_msgs/Quaternion orientation\n"
+    + "float64[9] orientation_covariance\ngeometry_msgs/Vector3 angular_velocity\n"
+    + "float64[9] angular_velocity_covariance\ngeometry_msgs/Vector3 linear_acceleration\n"
+    + "float64[9] linear_acceleration_covariance\n"
+    + HEADER
+    + STAMP
+    + VECTOR
+    + QUATERNION,
     "sensor_msgs/msg/LaserScan": "std_msgs/Header header\nfloat32 angle_min\nfloat32 angle_max\nfloat32 angle_increment\n"
     + "float32 time_increment\nfloat32 scan_time\nfloat32 range_min\nfloat32 range_max\nfloat32[] ranges\n"
     + "float32[] intensities\n"
@@ -145,6 +157,21 @@ def range_of(row):
     }
 
 
+def joints(row):
+    """Wheels of 6 cm, 20 cm apart, that turn as the drive does, and a joint that does not belong to the drive."""
+    angles = [row["wheel_left_rad"], 0.3, row["wheel_right_rad"]]
+    names = ["wheel_left_joint", "camera_joint", "wheel_right_joint"]
+    return {"header": header(row["t_s"]), "name": names, "position": angles, "velocity": [], "effort": []}
+
+
+def imu(row):
+    return {
+        "header": header(row["t_s"]), "orientation": turned(row), "orientation_covariance": [0.0] * 9,
+        "angular_velocity": vector(0.0, 0.0, row["w_rad_s"]), "angular_velocity_covariance": [0.0] * 9,
+        "linear_acceleration": vector(0.0, 0.0, 9.81), "linear_acceleration_covariance": [0.0] * 9,
+    }
+
+
 def odometry(row):
     return {
         "header": header(row["t_s"]), "child_frame_id": "base_link",
@@ -155,7 +182,14 @@ def odometry(row):
 
 def rows(path):
     with open(path, newline="") as file:
-        return [{name: float(cell) for name, cell in row.items()} for row in csv.DictReader(file)]
+        drive = [{name: float(cell) for name, cell in row.items()} for row in csv.DictReader(file)]
+    angles, before_s = {"wheel_left_rad": 0.0, "wheel_right_rad": 0.0}, drive[0]["t_s"]
+    for row, held in zip(drive, drive[:1] + drive):
+        for side, name in ((-1, "wheel_left_rad"), (1, "wheel_right_rad")):
+            angles[name] += (held["v_m_s"] + side * 0.1 * held["w_rad_s"]) / 0.03 * (row["t_s"] - before_s)
+        row.update(angles)
+        before_s = row["t_s"]
+    return drive
 
 
 def write(path, compression, kinds, drive):
@@ -172,6 +206,8 @@ def write(path, compression, kinds, drive):
                 "TFMessage": lambda: tf(row, "map", "base_link"),
                 "Range": lambda: range_of(row),
                 "LaserScan": lambda: scan(row),
+                "JointState": lambda: joints(row),
+                "Imu": lambda: imu(row),
             }[name]()
             bag.write(topic, kind, t_s, message)
     bag.writer.finish()
@@ -184,7 +220,8 @@ def main(drive, folder):
     transforms = ("/tf", "tf2_msgs/msg/TFMessage")
     sonar, laser = ("/sonar", "sensor_msgs/msg/Range"), ("/scan", "sensor_msgs/msg/LaserScan")
     write(folder / "tracker.mcap", CompressionType.ZSTD, [command, tracked, sonar], drive)
-    write(folder / "odometry.mcap", CompressionType.LZ4, [stamped, odom, laser], drive)
+    wheels, gyro = ("/joint_states", "sensor_msgs/msg/JointState"), ("/imu", "sensor_msgs/msg/Imu")
+    write(folder / "odometry.mcap", CompressionType.LZ4, [stamped, odom, laser, wheels, gyro], drive)
     write(folder / "transforms.mcap", CompressionType.NONE, [command, transforms], drive)
     localised(folder / "localised.mcap", CompressionType.ZSTD, drive)
 

@@ -45,14 +45,22 @@ fn every_path_that_it_names_exists() {
     }
 }
 
-/// A crate inherits what the workspace forbids, such as `unsafe`, only if its manifest says so.
+/// A crate inherits what the workspace forbids, such as `unsafe`, only if its manifest says so. The module in a browser shares
+/// memory with JavaScript: it denies `unsafe`, and one file expects it.
 #[test]
 fn every_crate_has_the_lints_of_the_workspace() {
     assert!(read("Cargo.toml").contains("unsafe_code = \"forbid\""));
     let others = ["core", "controller-export", "fuzz", "python", "tests"].map(str::to_owned);
-    for folder in crates().into_iter().map(|name| format!("host-sim/{name}")).chain(others) {
+    let ours = crates().into_iter().filter(|name| name != "browser").map(|name| format!("host-sim/{name}"));
+    for folder in ours.chain(others) {
         assert!(read(&format!("{folder}/Cargo.toml")).contains("[lints]\nworkspace = true"), "{folder}");
     }
+    assert!(read("host-sim/browser/Cargo.toml").contains("unsafe_code = \"deny\""));
+    let sources = fs::read_dir(workspace().join("host-sim/browser/src")).expect("the sources of the module");
+    let files = sources.map(|entry| entry.expect("an entry").file_name().into_string().expect("UTF-8"));
+    let with_unsafe: Vec<String> =
+        files.filter(|file| read(&format!("host-sim/browser/src/{file}")).contains("unsafe")).collect();
+    assert_eq!(with_unsafe, ["exports.rs"]);
 }
 
 #[test]
@@ -97,5 +105,23 @@ fn sibling_modules_know_each_other_without_circles() {
         let modules = Modules::read(&workspace().join(format!("{name}/src")));
         let circles: Vec<Edge> = modules.parents().flat_map(|parent| in_circles(&modules.edges(parent))).collect();
         assert!(circles.is_empty(), "{name}: these modules depend on each other in a circle:\n{circles:#?}");
+    }
+}
+
+/// Pages name sources by their paths from the root; a word in capitals stands for any name.
+#[test]
+fn every_source_that_a_page_names_exists() {
+    let roots = ["host-sim/", "core/", "controller-export/", "tests/", "python/", "fuzz/", "findings/"];
+    let summary = read("docs/SUMMARY.md");
+    let chapters = summary.split("](").skip(1).filter_map(|rest| rest.split(')').next());
+    let pages: Vec<String> = chapters.map(|page| format!("docs/{page}")).chain(["README.md".into()]).collect();
+    assert!(pages.len() > 20, "the book has many pages");
+    for page in pages {
+        let is_path =
+            |word: &String| roots.iter().any(|root| word.starts_with(root)) && !word.contains(char::is_whitespace);
+        let is_pattern = |word: &String| word.contains(['*', '<']) || word.contains(char::is_uppercase);
+        for path in quoted(&read(&page)).into_iter().filter(|word| is_path(word) && !is_pattern(word)) {
+            assert!(workspace().join(&path).exists(), "{page}: {path} does not exist");
+        }
     }
 }

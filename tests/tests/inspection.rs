@@ -66,6 +66,88 @@ fn a_shifted_clock_of_all_runs_withholds_motion() {
     assert!(inspected.withheld(Part::Motion).is_some() && inspected.withheld(Part::Sonar).is_none());
 }
 
+/// The id of a finding, and what makes a row have it.
+type Fault<'a> = (&'a str, &'a dyn Fn(&mut Row));
+
+/// A robot with a gyro, which shows the turn that follows.
+fn logs_with_gyro(runs: usize) -> Logs {
+    let mut logs = logs(runs, &[]);
+    for run in &mut logs.runs {
+        for k in 0..run.rows.len() - 1 {
+            let [from, to] = [k, k + 1].map(|k| run.rows.at(k));
+            let turn = from.pose.zip(to.pose).map(|(from, to)| from.relative(&to).heading_rad.to_degrees());
+            let rate = turn.map(|turn| 1000.0 * turn / (to.t_ms - from.t_ms));
+            run.rows.edit(k, |row| row.gyro_deg_s = rate);
+        }
+    }
+    logs
+}
+
+#[test]
+fn counters_and_gyros_that_cannot_be_right_are_left_out() {
+    let good = logs_with_gyro(12);
+    assert!(Inspection::new(good.clone()).findings.is_empty());
+    let change = |row: &mut Row, change: fn(f64) -> f64| {
+        row.rot_left_deg = row.rot_left_deg.map(change);
+    };
+    let faults: [Fault; 6] = [
+        ("counter_backwards", &|row| change(row, |deg| -deg)),
+        ("counter_wraps", &|row| change(row, |deg| deg.rem_euclid(360.0))),
+        ("counter_unit", &|row| change(row, |deg| deg.to_radians())),
+        ("gyro_sign", &|row| row.gyro_deg_s = row.gyro_deg_s.map(|rate| -rate)),
+        ("gyro_unit", &|row| row.gyro_deg_s = row.gyro_deg_s.map(f64::to_radians)),
+        ("gyro_unit", &|row| row.gyro_deg_s = row.gyro_deg_s.map(|rate| -rate.to_radians())),
+    ];
+    for (id, put) in faults {
+        let mut faulty = good.clone();
+        faulty.runs.iter_mut().for_each(|run| run.rows.edit_each(put));
+        let inspected = Inspection::new(faulty);
+        let found: Vec<_> = inspected.findings.iter().map(|found| (found.id, found.handling)).collect();
+        assert_eq!(found, [(id, Handling::Excluded)]);
+        let mut rows = inspected.logs.runs.iter().flat_map(|run| &run.rows);
+        let is_counter = id.starts_with("counter");
+        assert!(rows.all(|row| row.rot_left_deg.is_none() == is_counter && row.rot_right_deg.is_some()), "{id}");
+    }
+}
+
+/// Of a counter that is reset, and of one that overflows at sixteen bits, only the step across the jump is lost.
+#[test]
+fn a_counter_that_jumps_loses_one_step() {
+    for reset in [true, false] {
+        let mut faulty = logs(12, &[]);
+        let rows = &mut faulty.runs[RUN].rows;
+        let at_reset = rows.at(20).rot_right_deg.expect("a counter");
+        (20..rows.len()).for_each(|k| {
+            rows.edit(k, |row| {
+                row.rot_right_deg = row.rot_right_deg.map(|deg| deg - if reset { at_reset + 5000.0 } else { 65536.0 })
+            });
+        });
+        let inspected = Inspection::new(faulty);
+        let [found] = inspected.findings.as_slice() else { panic!("{:?}", inspected.findings) };
+        assert_eq!((found.id, found.rows_by_run[0].rows.as_slice()), ("counter_jump", [20].as_slice()));
+        let rows = &inspected.logs.runs[RUN].rows;
+        assert!(rows.at(19).rot_right_deg.is_some() && rows.at(20).rot_right_deg.is_none());
+        assert!(rows.at(21).rot_right_deg.is_some());
+    }
+}
+
+/// Motion capture with another upright axis, read as if z were upright, shows no rotation.
+#[test]
+fn headings_that_never_change_withhold_everything() {
+    for flips in [false, true] {
+        let mut logs = logs(12, &[]);
+        for run in &mut logs.runs {
+            run.rows.edit_poses(|pose| {
+                let is_flipped = flips && pose.heading_rad.abs() > 1.5;
+                pose.heading_rad = if is_flipped { std::f64::consts::PI } else { 0.0 };
+            });
+        }
+        let inspected = Inspection::new(logs);
+        assert!(inspected.findings.iter().any(|found| found.id == "heading_constant"), "{:?}", inspected.findings);
+        assert!(inspected.withheld(Part::Motion).is_some() && inspected.withheld(Part::Sonar).is_some());
+    }
+}
+
 /// Someone carries the robot while its motors are at rest.
 #[test]
 fn motion_at_zero_commands_is_left_out() {

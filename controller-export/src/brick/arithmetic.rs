@@ -73,8 +73,9 @@ impl Operation {
             Op::Mul => left * right,
             Op::Div if right == 0.0 => 0.0,
             Op::Div => left / right,
-            Op::Mod if right as i32 == 0 => left,
-            Op::Mod => bits(i32::wrapping_rem),
+            Op::Mod if right == 0.0 => left,
+            // The divisor is truncated, and ARM's division by zero leaves no remainder.
+            Op::Mod => bits(|a, b| if b == 0 { 0 } else { a.wrapping_rem(b) }),
             Op::And => bits(|a, b| a & b),
             Op::Or => bits(|a, b| a | b),
             Op::Xor => bits(|a, b| a ^ b),

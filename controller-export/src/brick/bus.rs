@@ -34,6 +34,7 @@ const PRESSED_RAW: u32 = 183;
 pub(super) struct Port {
     kind: u8,
     mode: u8,
+    is_read: bool,
     invalid_until_ms: Option<u32>,
     state: State,
     received: VecDeque<u8>,
@@ -60,6 +61,17 @@ impl Port {
             // Overwritten by the firmware at its next millisecond.
             InputField::AdRaw | InputField::NormRaw | InputField::Scaled => {}
         }
+    }
+
+    /// Returns the value of a field to the program, given the reading of an analogue sensor on this port.
+    pub(super) fn read_field(&mut self, field: InputField, percent: Option<u8>, t_ms: u32) -> u32 {
+        self.is_read |= matches!(field, InputField::AdRaw | InputField::NormRaw | InputField::Scaled);
+        self.get(field, percent, t_ms)
+    }
+
+    /// Returns whether the program has read a value here or has asked a digital sensor.
+    pub(super) fn is_read(&self) -> bool {
+        self.is_read
     }
 
     /// Returns the value of a field, given the reading of an analogue sensor on this port.
@@ -96,6 +108,7 @@ impl Port {
         t_ms: u32,
         world: &mut dyn World,
     ) -> i8 {
+        self.is_read = true;
         self.settle(t_ms);
         let answer_bytes = usize::from(answer_bytes);
         if request.len() > BUFFER_BYTES || answer_bytes > BUFFER_BYTES {

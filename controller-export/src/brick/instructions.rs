@@ -132,8 +132,8 @@ impl<'p> Brick<'p, '_> {
             Op::GetIn => {
                 let port = self.memory.get_id(second)? as usize;
                 let field = InputField::from_number(third).ok_or(Fault::Instruction)?;
-                let value = match self.ports.get(port) {
-                    Some(on_port) => on_port.get(field, self.world.percent(port, self.t_ms), self.t_ms),
+                let value = match self.ports.get_mut(port) {
+                    Some(on_port) => on_port.read_field(field, self.world.percent(port, self.t_ms), self.t_ms),
                     None => 0,
                 };
                 self.memory.set_id(first, value)?;

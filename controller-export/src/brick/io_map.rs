@@ -3,6 +3,8 @@
 //!
 //! Source: the `.iom` files of the firmware; names and offsets as in nbc's `NXTDefs.h`.
 
+use std::ops::Range;
+
 use super::{Brick, bus, motors};
 use crate::bytecode::{InputField, OutputField};
 
@@ -112,7 +114,22 @@ impl Brick<'_, '_> {
             return None;
         }
         self.refresh(module);
+        if module == Module::Input {
+            self.mark_inputs_read(range.clone());
+        }
         self.io_maps.0[module as usize].get(range).map(<[u8]>::to_vec)
+    }
+
+    /// Marks the ports whose values lie in a part of the map of the inputs.
+    fn mark_inputs_read(&mut self, range: Range<usize>) {
+        for (number, port) in self.ports.iter_mut().enumerate() {
+            for (field, offset, size) in INPUT {
+                let at = number * INPUT_BYTES + offset;
+                if range.start < at + size && at < range.end {
+                    port.read_field(field, None, self.t_ms);
+                }
+            }
+        }
     }
 
     /// Writes a part of a module's map. Returns `false` beyond its end.

@@ -89,8 +89,8 @@ impl<'p> Memory<'p> {
         if touched > MAX_PARTS { Err(Fault::CyclicData) } else { Ok(()) }
     }
 
-    /// Returns a number as an integer in the firmware's 32-bit accumulator. A float is rounded to nearest, halves away from
-    /// zero.
+    /// Returns a number as an integer in the firmware's 32-bit accumulator. A float is rounded by adding or
+    /// subtracting a half, and saturates.
     pub(super) fn get(&self, place: Place) -> Result<u32, Fault> {
         self.value(self.entry(place.id)?, place.base)
     }
@@ -105,7 +105,10 @@ impl<'p> Memory<'p> {
             Type::U16 => u32::from(u16::from_le_bytes(self.read(at)?)),
             Type::I16 => i16::from_le_bytes(self.read(at)?) as u32,
             Type::U32 | Type::I32 => u32::from_le_bytes(self.read(at)?),
-            Type::Float => f32::from_le_bytes(self.read(at)?).round() as i64 as u32,
+            Type::Float => {
+                let float = f32::from_le_bytes(self.read(at)?);
+                (float + 0.5f32.copysign(float)) as i32 as u32
+            }
             Type::Void | Type::Array | Type::Cluster | Type::Mutex => return Err(Fault::Argument),
         })
     }
@@ -147,12 +150,12 @@ impl<'p> Memory<'p> {
         self.set(Place::new(id), value)
     }
 
-    /// Stores a float. In an integer it is truncated towards zero.
+    /// Stores a float. In an integer, signed or not, it is truncated towards zero and saturates as a signed one.
     pub(super) fn set_float(&mut self, place: Place, value: f32) -> Result<(), Fault> {
         let entry = self.entry(place.id)?;
         match entry.kind {
             Type::Float => self.write(entry.at(place.base), value.to_le_bytes()),
-            _ => self.set(place, value as i64 as u32),
+            _ => self.set(place, value as i32 as u32),
         }
     }
 

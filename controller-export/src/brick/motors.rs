@@ -46,8 +46,9 @@ pub(super) struct Motor {
     tacho_zero: i32,
     block_zero: i32,
     rotation_zero: i32,
-    /// The power that was set, and the regulation if there is one.
+    /// The power that was set, the power that the motor gets, and the regulation that computes it if there is one.
     running_power: i8,
+    actual_power: i8,
     regulated: Option<Regulated>,
     overloaded: bool,
     brakes: bool,
@@ -55,12 +56,10 @@ pub(super) struct Motor {
     limit_deg: Option<i32>,
 }
 
-/// The regulation of a motor, which sets its power once per window.
+/// The regulation of a motor, which sets its power at the end of each window.
 #[derive(Clone, Debug)]
 struct Regulated {
     by: Regulation,
-    /// Power in this window.
-    power: i8,
     /// Time at which the window ends, and rotation of the shaft at its start.
     ends_ms: u32,
     start_deg: i32,
@@ -91,6 +90,7 @@ impl Default for Motor {
             block_zero: 0,
             rotation_zero: 0,
             running_power: 0,
+            actual_power: 0,
             regulated: None,
             overloaded: false,
             brakes: false,
@@ -129,7 +129,7 @@ impl Motor {
             OutputField::Flags => u32::from(self.flags),
             OutputField::Mode => u32::from(self.mode),
             OutputField::Power => self.power as u32,
-            OutputField::ActualSpeed => self.regulated_power() as u32,
+            OutputField::ActualSpeed => self.actual_power as u32,
             OutputField::TachoCount => rotation_deg.wrapping_sub(self.tacho_zero) as u32,
             OutputField::TachoLimit => self.tacho_limit,
             OutputField::RunState => u32::from(self.run_state),
@@ -170,6 +170,7 @@ impl Motor {
             self.brakes = is_on && self.mode & mode::BRAKE != 0;
             if !is_on {
                 self.running_power = 0;
+                self.run_state = RUN_STATE_IDLE;
             }
         }
         if flags & (update::MODE | update::SPEED) != 0 {
@@ -191,40 +192,49 @@ impl Motor {
         self.limit_deg.is_some()
     }
 
-    /// Ends a run that has reached its limit. Returns the new drive.
-    pub(super) fn end_at_limit(&mut self, rotation_deg: i32) -> Option<Drive> {
-        let left_deg = self.limit_deg?.wrapping_sub(rotation_deg);
-        let continues = if self.running_power < 0 { left_deg < 0 } else { left_deg > 0 };
-        if continues && self.running_power != 0 {
-            return None;
-        }
+    /// Returns whether the shaft has turned by the limit, in the direction in which the motor is driven.
+    fn has_arrived(&self, rotation_deg: i32) -> bool {
+        self.limit_deg.is_some_and(|limit_deg| match self.running_power.signum() {
+            1 => rotation_deg >= limit_deg,
+            -1 => rotation_deg <= limit_deg,
+            // The firmware waits for a motor without power, although it never arrives.
+            _ => false,
+        })
+    }
+
+    /// Ends a run at its limit. The motor turns freely, and its program has to brake it.
+    fn end_run(&mut self) -> Drive {
         self.limit_deg = None;
         self.run_state = RUN_STATE_IDLE;
         self.running_power = 0;
+        self.actual_power = 0;
         self.regulated = None;
-        Some(self.drive())
+        self.brakes = false;
+        self.drive()
     }
 
-    /// Starts, continues or ends the regulation that the fields select. A motor at rest waits for the end of its first window.
+    /// Starts, continues or ends the regulation that the fields select. The motor keeps its power until the end of the window:
+    /// one at rest waits.
     fn regulate(&mut self, rotation_deg: i32, t_ms: u32) {
         let is_regulated = self.mode & mode::REGULATED != 0 && self.running_power != 0;
         let by = match self.regulation_mode {
             regulation_mode::SPEED if is_regulated => Regulation::Speed(Speed::default()),
             regulation_mode::SYNC if is_regulated => Regulation::Pair(Pair::default()),
             _ => {
+                self.actual_power = self.running_power;
                 self.regulated = None;
                 return;
             }
         };
-        let holds_speed = |by: &Regulation| matches!(by, Regulation::Speed(_));
-        if !self.regulated.as_ref().is_some_and(|regulated| holds_speed(&regulated.by) && holds_speed(&by)) {
-            let (power, ends_ms) = (self.regulated_power(), t_ms.saturating_add(regulation::WINDOW_MS));
-            self.regulated = Some(Regulated { by, power, ends_ms, start_deg: rotation_deg });
+        match &mut self.regulated {
+            // A new speed continues the errors of the last one. A pair begins a new movement, in the same window.
+            Some(Regulated { by: Regulation::Speed(_), .. }) if matches!(by, Regulation::Speed(_)) => {}
+            Some(regulated) => regulated.by = by,
+            None => {
+                let ends_ms = t_ms.saturating_add(regulation::WINDOW_MS);
+                self.regulated = Some(Regulated { by, ends_ms, start_deg: rotation_deg });
+            }
         }
-    }
-
-    fn regulated_power(&self) -> i8 {
-        self.regulated.as_ref().map_or(self.running_power, |regulated| regulated.power)
     }
 
     /// Returns whether the motor is one of two that are kept together.
@@ -244,9 +254,9 @@ impl Motor {
     }
 
     fn hold_speed(&mut self, rotation_deg: i32) {
-        if let Some(Regulated { by: Regulation::Speed(speed), power, start_deg, .. }) = &mut self.regulated {
+        if let Some(Regulated { by: Regulation::Speed(speed), start_deg, .. }) = &mut self.regulated {
             let turned_deg = rotation_deg.wrapping_sub(std::mem::replace(start_deg, rotation_deg));
-            (*power, self.overloaded) = speed.power(self.running_power, turned_deg, self.gains);
+            (self.actual_power, self.overloaded) = speed.power(self.running_power, turned_deg, self.gains);
         }
     }
 
@@ -272,7 +282,7 @@ impl Motor {
 
     /// Returns the drive that the regulation computes from it.
     pub(super) fn regulated_drive(&self) -> Drive {
-        self.drive_with(self.regulated_power())
+        self.drive_with(self.actual_power)
     }
 
     fn drive_with(&self, power: i8) -> Drive {
@@ -285,6 +295,40 @@ impl Motor {
 }
 
 impl Brick<'_, '_> {
+    /// Ends the runs of motors that have arrived at their limits. The first motor of a synchronised pair to arrive ends both.
+    pub(super) fn end_at_limits(&mut self) {
+        for port in 0..PORTS {
+            if !self.motors[port].has_limit() {
+                continue;
+            }
+            let rotation_deg = self.world.rotation_deg(port, self.t_ms);
+            if !self.motors[port].has_arrived(rotation_deg) {
+                continue;
+            }
+            if self.motors[port].is_synchronised() {
+                // A motor without a partner never ends.
+                let Some(other) = self.partner(port) else { continue };
+                if self.motors[port].turn_ratio != 0 {
+                    let counted_deg = rotation_deg.wrapping_sub(self.motors[port].tacho_zero);
+                    let other_deg = self.world.rotation_deg(other, self.t_ms);
+                    self.motors[other].tacho_zero = other_deg.wrapping_sub(counted_deg);
+                }
+                self.end_run(other);
+            }
+            self.end_run(port);
+        }
+    }
+
+    fn end_run(&mut self, port: usize) {
+        let drive = self.motors[port].end_run();
+        self.drive(port, drive);
+    }
+
+    /// Returns the first other motor that is synchronised.
+    fn partner(&self, port: usize) -> Option<usize> {
+        (0..PORTS).find(|other| *other != port && self.motors[*other].is_synchronised())
+    }
+
     /// Sets the power of regulated motors whose window has ended.
     pub(super) fn regulate_motors(&mut self) {
         for port in 0..PORTS {
@@ -318,9 +362,7 @@ impl Brick<'_, '_> {
         });
         let powers = self.motors[first].pair_powers(turned_deg).into_iter().flatten();
         for (at, new_power) in pair.iter().zip(powers) {
-            if let Some(regulated) = &mut self.motors[*at].regulated {
-                regulated.power = new_power;
-            }
+            self.motors[*at].actual_power = new_power;
         }
         pair
     }

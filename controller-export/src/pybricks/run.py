@@ -21,9 +21,7 @@ def run(robot):
     robot.set_motors(TUPLES[0][0], TUPLES[0][1])
     while True:
         next_ms += STEP_MS
-        left_ms = next_ms - robot.time_ms()
-        if left_ms > 0:
-            robot.wait_ms(left_ms)
+        robot.wait_until(next_ms)
         distance_mm = None
         try:
             distance_mm = robot.distance_mm()
@@ -45,7 +43,3 @@ def run(robot):
             continue
         robot.stop_motors()
         return ending
-
-
-if __name__ == "__main__":
-    print(run(Robot()))

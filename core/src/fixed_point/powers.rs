@@ -5,7 +5,7 @@
 
 use fixed::FixedI32;
 
-use super::product::upper_product;
+use super::product::{upper_product, upper_product_of_halves};
 use super::{Format, saturate};
 
 /// 2^(i/32) - 1 with 32 fractional bits. Evaluators in other languages need this table too.
@@ -43,6 +43,19 @@ pub const STEPS: [u32; 32] = [
     0xea4a_fa2a,
     0xf507_65b7,
 ];
+
+/// The lower and upper halves of [`STEPS`].
+static STEP_HALVES: [[u16; 2]; 32] = halves(STEPS);
+
+const fn halves(words: [u32; 32]) -> [[u16; 2]; 32] {
+    let mut halves = [[0; 2]; 32];
+    let mut i = 0;
+    while i < words.len() {
+        halves[i] = [words[i] as u16, (words[i] >> 16) as u16];
+        i += 1;
+    }
+    halves
+}
 
 /// Returns 2^`x`: the largest number where the result does not fit, zero where it is under half an ulp.
 ///
@@ -97,11 +110,12 @@ fn exp2_of_fraction(fraction: u32) -> u32 {
     const C1: u32 = 1_488_522_352;
     const C2: u32 = 16_120_621;
     const C3: u32 = 117_619;
-    let step = STEPS[(fraction >> 27) as usize];
+    let halves = STEP_HALVES[(fraction >> 27) as usize];
+    let step = (u32::from(halves[1]) << 16) | u32::from(halves[0]);
     let t = fraction << 5;
     let growth = upper_product(t, C1 + upper_product(t, C2 + upper_product(t, C3)));
     // (1 + step) · growth, from 36 down to 32 fractional bits. The sum stays below 2^32.
-    step + ((growth + upper_product(step, growth) + 8) >> 4)
+    step + ((growth + upper_product_of_halves(halves, growth) + 8) >> 4)
 }
 
 /// Returns log2(1 + `fraction`), for `fraction` in [0, 1); both have 32 fractional bits. The error is below 2^-29.

@@ -17,8 +17,15 @@ pub fn upper_product(a: u32, b: u32) -> u32 {
     ((u64::from(a) * u64::from(b)) >> 32) as u32
 }
 
+/// Returns the upper half of the product, for a number that is stored in halves, the lower one first.
+#[cfg(not(short_products))]
+#[inline(always)]
+pub fn upper_product_of_halves(a: [u16; 2], b: u32) -> u32 {
+    upper_product((u32::from(a[1]) << 16) | u32::from(a[0]), b)
+}
+
 #[cfg(short_products)]
-pub use short::{product, upper_product};
+pub use short::{product, upper_product, upper_product_of_halves};
 
 #[cfg(any(test, short_products))]
 mod short {
@@ -34,7 +41,12 @@ mod short {
     }
 
     pub fn upper_product(a: u32, b: u32) -> u32 {
-        let (a_low, a_high) = (a & 0xffff, a >> 16);
+        upper_product_of_halves([a as u16, (a >> 16) as u16], b)
+    }
+
+    /// The compiler does not see a whole number in the halves, and so does not call its routine for 64-bit products.
+    pub fn upper_product_of_halves(a: [u16; 2], b: u32) -> u32 {
+        let (a_low, a_high) = (u32::from(a[0]), u32::from(a[1]));
         let (b_low, b_high) = (b & 0xffff, b >> 16);
         let middle = (a_high * b_low).wrapping_add((a_low * b_low) >> 16);
         let other = (a_low * b_high).wrapping_add(middle & 0xffff);

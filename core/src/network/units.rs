@@ -121,7 +121,7 @@ pub enum Activation {
 
 /// A weighted product of powers that can be evaluated on numbers of type `S`.
 ///
-/// [`ProductUnit`] implements it for floats, [`Power`](crate::folded::Power) for fixed point.
+/// [`ProductUnit`] implements it for floats.
 ///
 /// ```
 /// use mindgap_core::network::{ProductUnit, Term};

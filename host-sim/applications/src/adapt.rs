@@ -5,6 +5,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use mindgap_diagnosis::progress::Stage;
+use mindgap_diagnosis::verdict::NamedEffect;
 use mindgap_diagnosis::{Method, findings_watched};
 use mindgap_foundations::error::{Error, Result};
 use mindgap_foundations::motion::{Axis, Motion};
@@ -25,6 +26,9 @@ use mindgap_models::simulator::ensemble::{Ensemble, Held, Posterior};
 
 /// Log evidence in nats by which effects must beat a bias per command: strong evidence.
 const EFFECT_NATS: f64 = 5.0;
+/// Factor on the errors of held-out runs beyond which effects predict worse than biases do. Evidence alone can favour an
+/// effect that misleads wherever the logged runs did not drive.
+const WORSE: f64 = 1.1;
 /// Maximum number of cross-validation folds.
 const PARTS: usize = 8;
 /// Commands held for fewer steps than this are not reported.
@@ -34,6 +38,8 @@ const FEWEST_STEPS: usize = 2;
 pub struct Adapted {
     /// The adapted simulator.
     pub simulator: Simulator,
+    /// The simulator adapted by biases alone, if effects on the motion are used.
+    pub without_effects: Option<Simulator>,
     /// What was learned.
     pub lesson: Lesson,
 }
@@ -43,10 +49,25 @@ pub struct Adapted {
 pub struct Lesson {
     /// Effects that the diagnosis named and that were added to the simulator.
     pub effects: Vec<AppliedEffect>,
+    /// All effects that the diagnosis named.
+    pub causes: Vec<Cause>,
     /// Corrections per command, largest change first.
     pub commands: Vec<CommandBias>,
     /// Error per step on held-out runs, before and after; null for a single run.
     pub gap: Option<Gap>,
+}
+
+/// An effect that the diagnosis of the runs named.
+#[derive(Clone, Debug, PartialEq, Serialize, serde::Deserialize, JsonSchema)]
+pub struct Cause {
+    /// Its id.
+    pub id: String,
+    /// Its probability, 0..=1.
+    pub probability: f64,
+    /// Ids of effects that these runs cannot distinguish from it.
+    pub ambiguous_with: Vec<String>,
+    /// Whether it was added to the simulator; if not, a bias per command predicts the runs better.
+    pub used: bool,
 }
 
 /// Bias of a command relative to the networks: forward (cm), lateral (cm) and turn (degrees) per step, each with its
@@ -90,28 +111,57 @@ pub fn adapt(simulator: &Simulator, logs: &Logs, seed: u64, watch: impl Fn(Stage
     if plain.is_empty() {
         return Err(Error::new("the runs contain no step with a pose at both ends: nothing to adapt to"));
     }
-    let effects = diagnosed(baseline.clone(), logs, seed, watch);
+    let (effects, causes) = diagnosed(baseline.clone(), logs, seed, watch);
     let explained = steps(&baseline, &effects, &observations);
     let networks = simulator.motion_networks().ok_or_else(missing)?;
     let said: Held = &networks;
     let given = |steps: &[StepResidual]| conditioned(ensemble, robot, said, steps);
     let probability = |steps: &[StepResidual]| probability(given(steps), said);
-    let named = explained == plain || probability(&explained) > probability(&plain) + EFFECT_NATS;
-    let (effects, steps) = if named {
-        (effects, explained)
-    } else {
-        (without_motion(&baseline, effects, &observations, &plain), plain.clone())
+    let held_out = |steps: &[StepResidual]| held_out(ensemble, robot, said, &plain, steps);
+    let moves = explained != plain;
+    let raises_likelihood = || probability(&explained) > probability(&plain) + EFFECT_NATS;
+    let misleads =
+        |gap: &Option<Gap>| moves && gap.zip(held_out(&plain)).is_some_and(|(with, without)| with.is_worse(&without));
+    let gap_with = (!moves || raises_likelihood()).then(|| held_out(&explained)).filter(|gap| !misleads(gap));
+    let is_used = gap_with.is_some();
+    let (effects, steps, gap) = match gap_with {
+        Some(gap) => (effects, explained, gap),
+        None => (without_motion(&baseline, effects, &observations, &plain), plain.clone(), held_out(&plain)),
     };
     let after = given(&steps);
     let lesson = Lesson {
         commands: commands(&holds(&steps), said, ensemble, &after),
-        gap: held_out(ensemble, robot, said, &plain, &steps),
+        gap,
+        causes: causes.into_iter().map(|cause| Cause::of(cause, &effects)).collect(),
         effects: effects.clone(),
     };
-    let mut simulator = simulator.clone();
-    simulator.added.extend(effects);
-    simulator.ensemble = Some(after);
-    Ok(Adapted { simulator, lesson })
+    let with = |effects: Vec<AppliedEffect>, ensemble: Ensemble| {
+        let added = [simulator.added.clone(), effects].concat();
+        Simulator { added, ensemble: Some(ensemble), ..simulator.clone() }
+    };
+    let without_effects = (moves && is_used)
+        .then(|| with(without_motion(&baseline, effects.clone(), &observations, &plain), given(&plain)));
+    Ok(Adapted { simulator: with(effects, after), without_effects, lesson })
+}
+
+impl Cause {
+    fn of(named: NamedEffect, used: &[AppliedEffect]) -> Self {
+        Cause {
+            used: used.iter().any(|effect| effect.effect == named.id),
+            id: named.id.into(),
+            probability: named.probability,
+            ambiguous_with: named.ambiguous_with.into_iter().map(str::to_owned).collect(),
+        }
+    }
+}
+
+impl Gap {
+    /// Returns whether runs that were not learned from are predicted worse than by another adaptation, all axes together.
+    fn is_worse(&self, other: &Gap) -> bool {
+        let after = |gap: &Gap| [gap.forward_cm[1], gap.lateral_cm[1], gap.turn_deg[1]];
+        let ratios = after(self).into_iter().zip(after(other)).map(|(one, other)| one / other.max(f64::EPSILON));
+        ratios.map(|ratio| ratio * ratio).sum::<f64>() > 3.0 * WORSE * WORSE
+    }
 }
 
 /// Returns the log evidence under the assumption that the robot changed only by effects.
@@ -131,11 +181,17 @@ fn without_motion(
     effects
 }
 
-/// Returns the effects that a diagnosis names; empty if the logs do not suffice for a diagnosis.
-fn diagnosed(baseline: Baseline, logs: &Logs, seed: u64, watch: impl Fn(Stage)) -> Vec<AppliedEffect> {
+/// Returns the effects that a diagnosis names, as a simulator stores them and with their probabilities; empty if the logs do
+/// not suffice for a diagnosis.
+fn diagnosed(
+    baseline: Baseline,
+    logs: &Logs,
+    seed: u64,
+    watch: impl Fn(Stage),
+) -> (Vec<AppliedEffect>, Vec<NamedEffect>) {
     let method = Method { seed, ..Method::default() };
     let found = findings_watched(baseline, &Inspection::new(logs.clone()), method, watch);
-    found.map_or_else(|_| Vec::new(), |found| found.applied)
+    found.map_or_else(|_| Default::default(), |found| (found.applied, found.diagnosis.effects))
 }
 
 /// Returns the residual of every logged step, with these effects in addition to those of the simulator. Effects act on

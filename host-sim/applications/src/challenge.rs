@@ -8,18 +8,41 @@ pub mod answer;
 mod bench;
 pub mod calibrate;
 pub mod cases;
+pub mod coverage;
 pub mod make;
 pub mod rooms;
 pub mod score;
 pub mod seal;
 pub mod sensitivity;
+pub mod share;
+mod truth;
 
 use std::path::{Path, PathBuf};
+
+use mindgap_files as files;
+use mindgap_foundations::error::{Error, Result};
+use seal::Published;
 
 /// Paths within the folder of a challenge (docs/reference/formats.md, "A challenge").
 pub struct Folder<'a>(pub &'a Path);
 
 impl Folder<'_> {
+    /// Reads the list of cases, whose names lie in this folder.
+    ///
+    /// # Errors
+    /// If it cannot be read, or a case or robot has the name of a place elsewhere.
+    pub fn published(&self) -> Result<Vec<Published>> {
+        let cases: Vec<Published> = files::read_csv(&self.cases())?;
+        for Published { case, robot, .. } in &cases {
+            for name in [case, robot] {
+                files::in_folder(self.0, name).map_err(|_| {
+                    Error::in_file(&self.cases(), format!("{name:?} is not the name of a case or robot"))
+                })?;
+            }
+        }
+        Ok(cases)
+    }
+
     /// Returns the list of cases, with the robot of each and the commitment to its effects.
     pub fn cases(&self) -> PathBuf {
         self.0.join("cases.csv")

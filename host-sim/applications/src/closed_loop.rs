@@ -13,20 +13,19 @@ mod similarity;
 pub mod state;
 mod tuple_trace;
 
-use std::fs;
+use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 
 use mindgap_core::controller::Controller;
 
 use crate::adapt::{Adapted, adapt};
-use evaluator::{Candidate, Tried};
+use evaluator::{Candidate, Found, Tried};
 use log_check::LogCheck;
 use mindgap_files as files;
 use mindgap_foundations::error::{Error, Result};
 use mindgap_foundations::executor::{self, Executor};
 use mindgap_foundations::geometry::Pose;
 use mindgap_foundations::random::derive;
-use mindgap_learning::evolve::success_probability::SuccessProbability;
 use mindgap_logs::controller_file::{ControllerFile, Origin};
 use mindgap_logs::{Logs, Run, Scene};
 use mindgap_models::simulator::Simulator;
@@ -78,12 +77,14 @@ struct ClosedLoop<'a> {
     scene: Scene,
     start: Pose,
     state: State,
+    /// Held while the loop runs.
+    _lock: Option<File>,
 }
 
 /// Runs a loop to its end, resuming the one in its folder if there is one.
 ///
 /// # Errors
-/// If a file cannot be read or written, the folder holds another loop, or the robot fails twice in a row.
+/// If a file cannot be read or written, the folder holds another loop or is in use by one, or the robot fails twice in a row.
 pub fn run(job: &Job, robot: &mut dyn TrialRobot, mut on_event: impl FnMut(Event)) -> Result<State> {
     let mut trials = ClosedLoop::open(job)?;
     // Written first, so that the folder is recognised as a loop's.
@@ -109,8 +110,17 @@ impl<'a> ClosedLoop<'a> {
             return Err(Error::in_file(job.scene, "has no [target]"));
         }
         files::make_folder(job.folder)?;
-        let state = executor::once(job.executor, || State::open(job))?;
-        Ok(ClosedLoop { job, simulator, scene, start, state })
+        let mut lock = None;
+        let state = executor::once(job.executor, || {
+            lock = files::lock_folder(job.folder)?;
+            State::open(job)
+        })?;
+        Ok(ClosedLoop { job, simulator, scene, start, state, _lock: lock })
+    }
+
+    /// Returns the path of a file in the loop's folder.
+    fn file(&self, name: &str) -> Result<PathBuf> {
+        files::in_folder(self.job.folder, name)
     }
 
     /// Adapts to all runs so far, and ends the loop or plans the next trial.
@@ -133,8 +143,10 @@ impl<'a> ClosedLoop<'a> {
         };
         let tried = self.tried()?;
         let known = search.judged(&tried)?;
-        self.note(adapted, tried.last().and_then(|last| known.chance_of(&last.controller)));
-        simulator.write(&self.job.folder.join("simulator.json"))?;
+        if let (Some(adapted), Some(last)) = (adapted, tried.last()) {
+            self.note(adapted, &last.controller, &known, search)?;
+        }
+        simulator.write(&self.file("simulator.json")?)?;
         if let Some(works) = known.confirmed(&tried) {
             return self.settle(Verdict::Works, works);
         }
@@ -151,34 +163,42 @@ impl<'a> ClosedLoop<'a> {
         if choice.chance.success < HOPELESS {
             return self.settle(Verdict::Infeasible, choice);
         }
-        let trial = Trial::planned(count + 1, choice.chance, search.paths(&choice.controller)?);
-        self.write_controller(&self.job.folder.join(&trial.controller), choice)?;
+        let (endings, paths) = (search.endings(&choice.controller)?, search.paths(&choice.controller)?);
+        let trial = Trial::planned(count + 1, choice.chance, Some(endings), paths);
+        self.write_controller(&self.file(&trial.controller)?, choice)?;
         self.state.trials.push(trial);
         Ok(())
     }
 
-    /// Stores at the last trial what was learned from its run.
-    fn note(&mut self, adapted: Option<Adapted>, chance: Option<SuccessProbability>) {
-        if let (Some(trial), Some(Adapted { lesson, .. })) = (self.state.trials.last_mut(), adapted) {
-            trial.effects = lesson.effects;
-            trial.gap = lesson.gap;
-            trial.chance_after = chance;
-        }
+    /// Stores at the last trial, of this controller, what was learned from its run, and why its success probability changed.
+    fn note(&mut self, adapted: Adapted, driven: &Controller, known: &Found, search: Search) -> Result<()> {
+        let Some(trial) = self.state.trials.last_mut() else { return Ok(()) };
+        let Adapted { lesson, without_effects, .. } = adapted;
+        trial.effects = lesson.effects;
+        trial.causes = lesson.causes;
+        trial.gap = lesson.gap;
+        trial.chance_after = known.chance_of(driven);
+        trial.endings_after = Some(search.endings(driven)?);
+        let without = without_effects.map(|simulator| Search { simulator: &simulator, ..search }.endings(driven));
+        trial.chance_without_effects = without.transpose()?.map(|endings| endings.reached);
+        Ok(())
     }
 
     /// Drives the controller of the last trial and keeps its log if it is valid.
     fn drive(&mut self, robot: &mut dyn TrialRobot, on_event: &mut impl FnMut(Event)) -> Result<()> {
         let folder = self.job.folder;
         let Some(trial) = self.state.trials.last().cloned() else { return Ok(()) };
-        let path = folder.join(&trial.controller);
-        let controller = ControllerFile::read(&path)?.controller;
         let attempt = self.state.failures.iter().filter(|failure| failure.trial == trial.number).count();
-        let out = folder.join("driving.csv");
-        // An interrupted drive may have left a log of an unknown run.
-        let _ = fs::remove_file(&out);
+        let (controller_file, name) = (self.file(&trial.controller)?, trial.attempt(attempt));
+        let controller = ControllerFile::read(&controller_file)?.controller;
+        let log = self.file(&name)?;
+        // Whatever appears in a folder of its own is of this attempt.
+        let own_folder = files::StagingFolder::in_folder(folder)
+            .map_err(|e| Error::in_file(folder, format!("cannot be written: {e}")))?;
+        let out = own_folder.new_folder().join(name);
         on_event(Event::Driving(&trial));
         let call = Call {
-            controller: &path,
+            controller: &controller_file,
             scene: self.job.scene,
             start: self.job.start,
             out: &out,
@@ -187,14 +207,17 @@ impl<'a> ClosedLoop<'a> {
         };
         let check =
             LogCheck { simulator: &self.simulator, scene: &self.scene, start: self.start, controller: &controller };
-        let driven = robot.drive(&call).and_then(|()| check.read(&out));
+        let driven = robot.drive(&call).and_then(|()| log_check::receive(&out, &log)).and_then(|()| check.read(&log));
         match driven {
             Ok((run, real)) => {
-                run.write(&folder.join(&trial.log))?;
-                let _ = fs::remove_file(&out);
+                run.write(&self.file(&trial.log)?)?;
+                let _ = fs::remove_file(&log);
                 if let Some(trial) = self.state.trials.last_mut() {
                     trial.real = Some(real);
                     on_event(Event::Driven(trial));
+                }
+                for name in drawing::FILES {
+                    self.file(name)?;
                 }
                 drawing::paths(folder, &self.scene, self.start, &self.state)
             }
@@ -216,7 +239,7 @@ impl<'a> ClosedLoop<'a> {
 
     /// Ends the loop with a controller.
     fn settle(&mut self, verdict: Verdict, settled: &Candidate) -> Result<()> {
-        self.write_controller(&self.job.folder.join("controller.toml"), settled)?;
+        self.write_controller(&self.file("controller.toml")?, settled)?;
         self.state.verdict = verdict;
         self.state.chance = Some(settled.chance);
         self.state.chance_with_runs = Some(settled.score);
@@ -226,14 +249,15 @@ impl<'a> ClosedLoop<'a> {
     /// Reads the logs of all trials.
     fn runs(&self) -> Result<Vec<Run>> {
         let driven = self.state.trials.iter().filter(|trial| trial.real.is_some());
-        driven.map(|trial| Run::read(&self.job.folder.join(&trial.log), |_| {})).collect()
+        let sensors = self.simulator.sensors();
+        driven.map(|trial| Run::read_by(&self.file(&trial.log)?, &sensors)).collect()
     }
 
     /// Returns the distinct controllers of all trials with their results.
     fn tried(&self) -> Result<Vec<Tried>> {
         let mut tried: Vec<Tried> = Vec::new();
         for trial in &self.state.trials {
-            let controller = ControllerFile::read(&self.job.folder.join(&trial.controller))?.controller;
+            let controller = ControllerFile::read(&self.file(&trial.controller)?)?.controller;
             let Some(real) = &trial.real else { continue };
             let before = tried.iter().position(|tried| tried.controller == controller).map(|at| tried.remove(at));
             let before = before.unwrap_or(Tried { controller, runs: 0, successes: 0, steps: 0 });
@@ -258,6 +282,6 @@ impl<'a> ClosedLoop<'a> {
             fitness: None,
             success: chance.success,
         };
-        ControllerFile { controller: controller.clone(), origin: Some(origin) }.write(path)
+        ControllerFile { controller: controller.clone(), sensors: Default::default(), origin: Some(origin) }.write(path)
     }
 }

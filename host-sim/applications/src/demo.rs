@@ -278,7 +278,7 @@ impl<W: Fn(Stage)> DemoRun<'_, W> {
         let in_file = |e: mindgap_controller_export::ExportError| Error::new(e.to_string());
         let program = BrickName::program(&name).map_err(in_file)?;
         let options = NxcOptions { display: true, ..NxcOptions::new(program) };
-        let file = ControllerFile { controller: controller.clone(), origin: Some(origin) };
+        let file = ControllerFile { controller: controller.clone(), sensors: Default::default(), origin: Some(origin) };
         let source = nxc::program(controller, &Origin::from(&file), &options).map_err(in_file)?;
         files::write(&self.out.join(format!("{name}.nxc")), source)?;
         file.write(&self.out.join(format!("{name}.toml")))

@@ -96,6 +96,10 @@ fn examined(logs: &Path, name: &str, request: &Request) -> Examined {
     let folder = logs.join(name);
     let diagnosed = || -> Result<(Robot, String)> {
         let logs = Logs::read(&folder, |oddity| log::info!("{oddity}"))?;
+        if logs.sensors().are_several() {
+            let what = "has several range sensors, and a fleet is compared by one: diagnose this robot by itself";
+            return Err(Error::in_file(&folder, what));
+        }
         let answered = request.of(logs, |_| ()).map_err(|error| error.or_in_file(&folder))?;
         let json = files::json(&folder, &answered.findings.diagnosis)?;
         Ok((Robot::of(&answered), json))

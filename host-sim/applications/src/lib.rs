@@ -3,6 +3,8 @@
 pub mod adapt;
 pub mod challenge;
 pub mod closed_loop;
+pub mod compare;
 pub mod demo;
+pub mod experiments;
 pub mod fleet;
 pub mod on_board;

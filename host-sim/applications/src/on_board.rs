@@ -148,6 +148,7 @@ impl<'r> OnBoard<'r> {
                     rot_left_deg: Some(left.angle_deg(self.t_ms).into()),
                     rot_right_deg: Some(right.angle_deg(self.t_ms).into()),
                     battery_mv: Some(CHARGED_MV.into()),
+                    gyro_deg_s: None,
                 }
             }
         }

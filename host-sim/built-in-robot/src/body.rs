@@ -6,9 +6,10 @@ use rand::RngExt;
 
 use super::BuiltInRobot;
 use super::drivetrain::Drivetrain;
+use super::hardware::Hardware;
 use super::noise::happens;
 use super::sonar::{Ping, Receiver};
-use mindgap_foundations::geometry::Pose;
+use mindgap_foundations::geometry::{Pose, wrap_rad};
 use mindgap_foundations::random::Generator;
 use mindgap_logs::Row;
 
@@ -23,8 +24,8 @@ pub struct Body<'a> {
     receiver: Receiver,
     /// Heading shown by the compass needle.
     needle_rad: f64,
-    /// Past poses with their times, back to the ping whose echo the sensor reports now.
-    trail: VecDeque<(f64, Pose)>,
+    /// The past, back to the oldest that sensor or tracker still report.
+    trail: VecDeque<Past>,
     t_ms: f64,
     /// The command in effect at the motor driver.
     command: [f64; 2],
@@ -35,6 +36,15 @@ pub struct Body<'a> {
     crashed: bool,
 }
 
+/// Where the robot was.
+#[derive(Clone, Copy, Debug)]
+struct Past {
+    t_ms: f64,
+    pose: Pose,
+    /// Heading shown by the compass needle.
+    needle_rad: f64,
+}
+
 impl<'a> Body<'a> {
     pub(super) fn at_rest(robot: &'a BuiltInRobot, at: Pose, rng: &mut Generator) -> Self {
         let clear_cm = robot.clearance_cm(&at);
@@ -43,7 +53,7 @@ impl<'a> Body<'a> {
             drivetrain: Drivetrain::at_rest(&robot.hardware, at, rng),
             receiver: Receiver::default(),
             needle_rad: at.heading_rad,
-            trail: VecDeque::from([(0.0, at)]),
+            trail: VecDeque::from([Past { t_ms: 0.0, pose: at, needle_rad: at.heading_rad }]),
             t_ms: 0.0,
             command: [0.0, 0.0],
             in_transit: VecDeque::new(),
@@ -96,14 +106,17 @@ impl<'a> Body<'a> {
     /// Reads the ultrasonic sensor, cm; `None` if it produced no value.
     pub fn read_sonar(&mut self, rng: &mut Generator) -> Option<f64> {
         let hardware = &self.robot.hardware;
-        let (_, from) = self.trail[0];
+        let from = self.past(self.t_ms - hardware.sonar.age_ms).pose;
         let ping = Ping { from, t_ms: self.t_ms, wheel_speed: self.drivetrain.wheel_speed(hardware) };
         self.receiver.read(&hardware.sonar, &self.robot.sides, &ping, rng)
     }
 
     /// Returns the pose measured by the tracker; `None` for a lost frame.
     pub fn track(&self, rng: &mut Generator) -> Option<Pose> {
-        self.robot.hardware.tracker.see(&self.true_pose(), self.needle_rad, rng)
+        let tracker = &self.robot.hardware.tracker;
+        let Past { t_ms, pose, needle_rad } = self.past(self.t_ms - tracker.age_ms);
+        let behind_rad = self.behind_rad(t_ms - tracker.averaged_ms, t_ms);
+        tracker.see(&pose, needle_rad, behind_rad, rng)
     }
 
     /// Returns the current row of a log, with the command from here on and the reading that led to it.
@@ -118,14 +131,32 @@ impl<'a> Body<'a> {
             rot_left_deg: Some(rot_left_deg),
             rot_right_deg: Some(rot_right_deg),
             battery_mv: Some((1000.0 * self.drivetrain.battery_v(&self.robot.hardware)).round()),
+            gyro_deg_s: None,
         }
     }
 
     fn record_trail(&mut self) {
-        self.trail.push_back((self.t_ms, self.true_pose()));
-        let pinged_ms = self.t_ms - self.robot.hardware.sonar.age_ms;
-        while self.trail.get(1).is_some_and(|(t_ms, _)| *t_ms <= pinged_ms) {
+        let Hardware { sonar, tracker, .. } = &self.robot.hardware;
+        let oldest_ms = self.t_ms - f64::max(sonar.age_ms, tracker.age_ms + tracker.averaged_ms);
+        self.trail.push_back(Past { t_ms: self.t_ms, pose: self.true_pose(), needle_rad: self.needle_rad });
+        while self.trail.get(1).is_some_and(|past| past.t_ms <= oldest_ms) {
             self.trail.pop_front();
         }
+    }
+
+    /// Returns where the robot was at a time, or where its trail begins.
+    fn past(&self, t_ms: f64) -> Past {
+        let after = self.trail.partition_point(|past| past.t_ms <= t_ms);
+        self.trail[after.max(1) - 1]
+    }
+
+    /// Returns by how much the mean heading between two times is behind the last one.
+    fn behind_rad(&self, from_ms: f64, to_ms: f64) -> f64 {
+        let now_rad = self.past(to_ms).pose.heading_rad;
+        let between = self.trail.iter().filter(|past| from_ms < past.t_ms && past.t_ms <= to_ms);
+        let (sum_rad, count) = between.fold((0.0, 0.0), |(sum_rad, count), past| {
+            (sum_rad + wrap_rad(now_rad - past.pose.heading_rad), count + 1.0)
+        });
+        if count > 0.0 { sum_rad / count } else { 0.0 }
     }
 }

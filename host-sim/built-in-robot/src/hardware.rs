@@ -214,6 +214,8 @@ pub(super) struct Sonar {
     pub loose: f64,
     /// Age of the ping behind a reading.
     pub age_ms: f64,
+    /// Distance along the floor at which the axis meets it; infinite for a level beam.
+    pub floor_cm: f64,
 }
 
 /// The ceiling camera and the compass on the robot.
@@ -231,6 +233,10 @@ pub(super) struct Tracker {
     pub iron: DVec2,
     /// Time constant of the compass needle.
     pub needle_ms: f64,
+    /// Time over which the tracker averages headings.
+    pub averaged_ms: f64,
+    /// Age of a pose when it arrives.
+    pub age_ms: f64,
     pub position_noise_cm: f64,
     /// Additional position noise one metre from the centre of the picture; it grows with the square of the distance.
     pub blur_cm_per_m2: f64,
@@ -382,6 +388,7 @@ impl Sonar {
             crosstalk: 0.0,
             loose: 0.0,
             age_ms: 0.0,
+            floor_cm: f64::INFINITY,
         }
     }
 }
@@ -396,6 +403,8 @@ impl Tracker {
             marker_cm: DVec2::ZERO,
             iron: DVec2::ZERO,
             needle_ms: 0.0,
+            averaged_ms: 0.0,
+            age_ms: 0.0,
             position_noise_cm: 0.22,
             blur_cm_per_m2: 0.0,
             marker_noise_rad: 0.017,

@@ -5,7 +5,7 @@
 //! robot's.
 //!
 //! [`BuiltInRobot`] is the robot in its room with its active [`effects`]; [`Body`] is its state during a run; [`record`] makes
-//! logs of random commands for a kind of [`Driving`]; [`run_controller`] runs a controller. Internally, `hardware` holds the
+//! logs of random commands for a kind of [`Driving`]; [`run_controller`] runs a controller, and [`run_script`] a script. Internally, `hardware` holds the
 //! parameters of all parts, `drivetrain` and `wheel` the dynamics, `sonar` the sensor, `tracker` camera and compass.
 
 mod acoustics;
@@ -18,6 +18,7 @@ mod hardware;
 mod noise;
 mod recording;
 mod rooms;
+mod script_run;
 mod sonar;
 mod tracker;
 mod wheel;
@@ -28,6 +29,7 @@ pub use driving::Driving;
 pub use effects::{ActiveEffect, Effect, HeldOut};
 pub use recording::{record, record_driving};
 pub use rooms::{default_robot, four_obstacles, training_room};
+pub use script_run::run_script;
 
 use effects::fitting;
 use hardware::Hardware;

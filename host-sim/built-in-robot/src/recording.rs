@@ -83,7 +83,8 @@ pub fn record_driving(
     Ok(Logs { robot: *spec, scene: scene.clone(), runs })
 }
 
-fn room_too_small(spec: &Robot) -> Error {
+/// Returns the error of a scene in which no place is free.
+pub(super) fn room_too_small(spec: &Robot) -> Error {
     let radius_cm = spec.body_radius_cm;
     Error::new(format!(
         "the scene has no room between its walls for the robot to drive in, a disc of radius {radius_cm} cm"
@@ -91,7 +92,7 @@ fn room_too_small(spec: &Robot) -> Error {
 }
 
 /// Draws a start pose with enough clearance.
-fn free_pose(spec: &Robot, scene: &Scene, rng: &mut Generator) -> Option<Pose> {
+pub(super) fn free_pose(spec: &Robot, scene: &Scene, rng: &mut Generator) -> Option<Pose> {
     let Rectangle { low_cm, high_cm } = scene.bounding_box()?;
     let heading_rad = rng.random_range(-PI..PI);
     (0..MAX_POSITIONS)

@@ -12,8 +12,8 @@ use mindgap_foundations::random::Generator;
 impl Tracker {
     /// Returns the tracked pose of a robot at `pose`, to two decimals; `None` for a lost frame. Without iron the compass would show
     /// the heading `needle_rad`. The camera was aligned with the compass when both were mounted, so the mean of their headings is
-    /// in the compass's frame.
-    pub fn see(&self, pose: &Pose, needle_rad: f64, rng: &mut Generator) -> Option<Pose> {
+    /// in the compass's frame; averaged over time it is behind by `behind_rad`.
+    pub fn see(&self, pose: &Pose, needle_rad: f64, behind_rad: f64, rng: &mut Generator) -> Option<Pose> {
         if happens(self.lost, rng) {
             return None;
         }
@@ -23,7 +23,7 @@ impl Tracker {
         let seen_cm = self.through_lens(marker_cm) + noise_cm;
         let camera_rad = pose.heading_rad + self.marker_noise_rad * normal(rng);
         let compass_rad = self.compass(needle_rad) + self.compass_noise_rad * normal(rng);
-        let heading_rad = wrap_rad(camera_rad + wrap_rad(compass_rad - camera_rad) / 2.0);
+        let heading_rad = wrap_rad(camera_rad + wrap_rad(compass_rad - camera_rad) / 2.0 - behind_rad);
         let heading_deg = two_decimals(heading_rad.to_degrees());
         Some(Pose::new(two_decimals(seen_cm.x), two_decimals(seen_cm.y), heading_deg.to_radians()))
     }

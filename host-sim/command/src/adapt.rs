@@ -86,7 +86,7 @@ impl Run for Adapt {
                 progress::at(&bar, share, format!("{}: {}", folder.display(), stage.words()));
             };
             let adapted = adapt(&simulator, &logs, self.seed, watch).map_err(|error| error.or_in_file(folder))?;
-            let Adapted { simulator: better, lesson } = adapted;
+            let Adapted { simulator: better, lesson, .. } = adapted;
             simulator = better;
             lessons.push(lesson);
         }
@@ -112,7 +112,9 @@ impl Adapt {
         let (Some(controller), Some(path)) = (&self.controller, &self.scene) else {
             return Err(Error::new("--controller needs --scene"));
         };
-        let controller = ControllerFile::read(controller)?.controller;
+        let file = ControllerFile::read(controller)?;
+        file.check_asks(simulator.first_sensor()).map_err(|error| error.or_in_file(controller))?;
+        let controller = file.controller;
         let scene = Scene::read(path)?;
         let start = super::evolve::start_of(&scene, self.start, &simulator.robot, path)?;
         let target_cm = scene.target_cm.ok_or_else(|| Error::in_file(path, "has no [target]"))?;
@@ -129,6 +131,15 @@ fn describe(lesson: &Lesson) -> String {
         let parameters: Vec<String> =
             effect.parameters.iter().map(|(name, value)| format!("{name} {value:.3}")).collect();
         text += &format!("  effect added: {}: {}\n", effect.effect, parameters.join(", "));
+    }
+    for cause in &lesson.causes {
+        let used = if cause.used { "" } else { ", not used: biases of commands predict the runs better" };
+        let rivals = if cause.ambiguous_with.is_empty() {
+            String::new()
+        } else {
+            format!(", not distinguished from {}", cause.ambiguous_with.join(", "))
+        };
+        text += &format!("  {}: probability {:.0} %{rivals}{used}\n", cause.id, 100.0 * cause.probability);
     }
     text += "  correction per step for each held command (left, right), mean ± SD:\n";
     let rows: Vec<[String; 5]> = lesson.commands.iter().take(COMMANDS).map(row).collect();

@@ -12,7 +12,7 @@ use mindgap_controller_export::brick::{self, Program, Report, RunConfig, Scripte
 use super::evolve::start_of;
 use super::json_output::JsonOption;
 use super::ports::PortOptions;
-use super::{Run, kinds, textbook};
+use super::{Run, kinds, textbook, warn};
 use mindgap_applications::on_board::{OnBoard, Vehicle};
 use mindgap_built_in_robot::{BuiltInRobot, default_robot};
 use mindgap_figures::report::paths::{PathPanel, Trace};
@@ -104,19 +104,35 @@ impl Run for Brick {
         let program = Program::load(&file)
             .map_err(|e| Error::in_file(&self.program, format!("is not a program that an NXT can run: {e}")))?;
         let config = RunConfig { run_ms: self.limit_ms, limit_events: self.limit_events, ..RunConfig::default() };
-        let (report, world) = match &self.scene {
+        let (report, configured, world) = match &self.scene {
             Some(scene) => self.in_scene(scene, &program, &config)?,
             None => self.by_script(&program, &config)?,
         };
-        self.json.emit_sorted(&BrickResults::from(&report), trace::text(&report) + &world)
+        let is_unconfigured = |port: &usize| report.ports_read[*port] && !configured.contains(port);
+        let unconfigured: Vec<usize> = (0..report.ports_read.len()).filter(is_unconfigured).map(|at| at + 1).collect();
+        for port in &unconfigured {
+            warn(format!("{}: {}", self.program.display(), self.unconfigured(*port)));
+        }
+        self.json.emit_sorted(&BrickResults::new(&report, unconfigured), trace::text(&report) + &world)
     }
 }
 
 impl Brick {
-    fn by_script(&self, program: &Program, config: &RunConfig) -> Result<(Report, String)> {
+    /// Returns the warning about a sensor port that the program reads and that has no sensor.
+    fn unconfigured(&self, port: usize) -> String {
+        let sensors = match &self.scene {
+            Some(_) => "the robot in the scene has only the ultrasonic sensor of --sonar".to_owned(),
+            None => format!("--sonar {port} puts the ultrasonic sensor there, column port_{port} of --world another"),
+        };
+        format!("the program reads port {port}, which no option configures, as empty; {sensors}")
+    }
+
+    /// Returns the report, the ports that have a sensor, and a line about the readings used.
+    fn by_script(&self, program: &Program, config: &RunConfig) -> Result<(Report, Vec<usize>, String)> {
         let sonar = self.readings.as_deref().map_or(Ok(Vec::new()), readings::read)?;
         let WorldScript { levels, presses } =
             self.world.as_deref().map_or(Ok(WorldScript::default()), world_script::read)?;
+        let configured = levels.iter().map(|level| level.port).chain([self.ports.wiring().sonar as usize]).collect();
         let mut world = ScriptedWorld {
             sonar_port: self.ports.wiring().sonar as usize,
             battery_mv: self.battery_mv,
@@ -128,10 +144,11 @@ impl Brick {
         };
         let report = brick::run(program, &mut world, config);
         let used = world.requests.min(world.sonar.len());
-        Ok((report, format!("the program asked for {used} of {} readings\n", world.sonar.len())))
+        Ok((report, configured, format!("the program asked for {used} of {} readings\n", world.sonar.len())))
     }
 
-    fn in_scene(&self, path: &Path, program: &Program, config: &RunConfig) -> Result<(Report, String)> {
+    /// Returns the report, the ports that have a sensor, and a line about the end of the run.
+    fn in_scene(&self, path: &Path, program: &Program, config: &RunConfig) -> Result<(Report, Vec<usize>, String)> {
         let wiring = self.ports.wiring();
         wiring.check().map_err(|e| Error::new(e.to_string()))?;
         if let Some(figure) = self.figure.as_ref().filter(|figure| !is_svg(figure) && !has_ending(figure, "png")) {
@@ -163,7 +180,7 @@ impl Brick {
             let figure = self.draw(&scene, start, &run, crashed);
             if is_svg(path) { files::write(path, figure.svg()) } else { files::write(path, figure.png()) }?;
         }
-        Ok((report, self.end_text(&scene, &robot, end, crashed)))
+        Ok((report, vec![wiring.sonar as usize], self.end_text(&scene, &robot, end, crashed)))
     }
 
     fn draw(&self, scene: &Scene, start: Pose, run: &logs::Run, crashed: bool) -> Figure {

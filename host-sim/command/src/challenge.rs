@@ -12,9 +12,12 @@ use mindgap_applications::challenge::Folder;
 use mindgap_applications::challenge::answer::answer;
 use mindgap_applications::challenge::calibrate::calibrate;
 use mindgap_applications::challenge::cases::{Echoes, Outside, Setting, Size};
+use mindgap_applications::challenge::coverage::form_errors;
 use mindgap_applications::challenge::make::make;
-use mindgap_applications::challenge::score::{Score, Share, score};
+use mindgap_applications::challenge::score::{Score, score};
 use mindgap_applications::challenge::sensitivity::{Row, sensitivity};
+use mindgap_applications::challenge::share::Share;
+use mindgap_diagnosis::interval::FormErrors;
 use mindgap_files as files;
 use mindgap_files::places::Places;
 use mindgap_foundations::error::Result;
@@ -98,6 +101,9 @@ enum Part {
         /// Also write the outcome of every case as CSV.
         #[arg(long, value_name = "FILE")]
         csv: Option<PathBuf>,
+        /// Also write the form errors with which intervals would hold; builds use host-sim/diagnosis/src/form_errors.toml.
+        #[arg(long, value_name = "FILE")]
+        form_errors: Option<PathBuf>,
     },
 }
 
@@ -125,9 +131,11 @@ impl Run for Challenge {
             Part::Calibrate { out, csv, .. } => places.writing([out], kinds::CALIBRATION).writing(csv, kinds::UNSIGNED),
             Part::Sensitivity { csv, .. } => places.writing(csv, kinds::UNSIGNED),
             Part::Answer { folder, .. } => places.reading([folder]).filling([&Folder(folder).answers()]),
-            Part::Score { folder, json, csv } => {
-                places.reading([folder]).writing(json.path(), kinds::REPORT).writing(csv, kinds::UNSIGNED)
-            }
+            Part::Score { folder, json, csv, form_errors } => places
+                .reading([folder])
+                .writing(json.path(), kinds::REPORT)
+                .writing(csv, kinds::UNSIGNED)
+                .writing(form_errors, kinds::FORM_ERRORS),
         }
     }
 
@@ -170,12 +178,15 @@ impl Run for Challenge {
                 bar.finish_and_clear();
                 Ok(format!("{}: {count} cases diagnosed\n", folder.display()))
             }
-            Part::Score { folder, json, csv } => {
+            Part::Score { folder, json, csv, form_errors: errors } => {
                 let bar = progress::bar(0);
                 let score = score(folder, progress::counting(&bar))?;
                 bar.finish_and_clear();
                 if let Some(path) = csv {
                     files::write_csv(path, &score.cases)?;
+                }
+                if let Some(path) = errors {
+                    files::write(path, form_errors(&score.measured, FormErrors::shipped()).to_text())?;
                 }
                 json.emit(&score, text(&score))
             }
@@ -240,6 +251,8 @@ fn text(score: &Score) -> String {
         line("unknown effects called unknown", &score.unknowns),
         line("known effects called unknown", &score.false_unknowns),
         line("wrong with probability above 0.9", &score.confidently_wrong),
+        line("false further effects with probability above 0.5", &score.false_seconds),
+        line("95 % intervals that hold the true value", &score.intervals.all),
     ];
     lines.extend(
         score.closed_error.map(|error| format!("{:<48} {:>5.3}", "median error of the closed share of the gap", error)),

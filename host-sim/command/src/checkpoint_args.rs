@@ -25,8 +25,8 @@ const GIVEN: &str = "given";
 /// The option `--checkpoint` of long commands.
 #[derive(Args)]
 pub struct CheckpointOption {
-    /// Checkpoint file, written from the beginning. An interrupted run resumes from it when called again with the same
-    /// arguments; the file is removed when the run completes (default: the output's name with `.checkpoint`, written once
+    /// Checkpoint file, created at the start of the run. Call the command again with the same arguments to resume; the file is
+    /// removed when the run completes (default: the output's name with `.checkpoint`, written once
     /// the run takes over a minute).
     #[arg(long, value_name = "FILE")]
     checkpoint: Option<PathBuf>,

@@ -20,6 +20,19 @@ pub const OUTSIDE: &Names = &[
     ("held-out", "Effects that were used neither to design nor to fit any part of the diagnosis"),
 ];
 
+/// Names of [`Engine`](mindgap_patch::engine::Engine).
+pub const ENGINES: &Names = &[
+    ("mujoco", "MuJoCo"),
+    ("pybullet", "Bullet, by PyBullet"),
+    ("drake", "Drake"),
+    ("dart", "DART"),
+    ("genesis", "Genesis"),
+    ("newton", "Newton with MuJoCo's solver"),
+    ("gazebo", "Gazebo, classic or new"),
+    ("webots", "Webots"),
+    ("isaac", "Isaac Sim"),
+];
+
 /// Names of [`Time`](mindgap_import::units::Time).
 pub const TIMES: &Names = &[("s", "Seconds"), ("ms", "Milliseconds"), ("us", "Microseconds")];
 
@@ -44,6 +57,7 @@ mod tests {
     use mindgap_applications::challenge::cases::Outside;
     use mindgap_import::units::{Angle, Length, Time};
     use mindgap_models::simulator::environment::SensorModel;
+    use mindgap_patch::engine::Engine;
 
     fn assert_all_parse<T: FromStr<Err = String>>(names: &Names) {
         names.iter().for_each(|(name, _)| assert!(name.parse::<T>().is_ok(), "{name}"));
@@ -54,6 +68,7 @@ mod tests {
     fn every_offered_name_parses() {
         assert_all_parse::<SensorModel>(SENSOR_MODELS);
         assert_all_parse::<Outside>(OUTSIDE);
+        assert_all_parse::<Engine>(ENGINES);
         assert_all_parse::<Time>(TIMES);
         assert_all_parse::<Length>(LENGTHS);
         assert_all_parse::<Angle>(ANGLES);

@@ -19,9 +19,9 @@ use mindgap_learning::evolve::success_probability::SuccessProbability;
 use mindgap_logs::Scene;
 use mindgap_pages::trials::{Subject, page};
 
-/// Evolve a controller, drive it on the robot, adapt the simulator to the run, and repeat until it works.
+/// Evolve a controller, drive it on the robot, adapt the simulator to the run, and repeat until a controller works or the trials are used up.
 ///
-/// The folder holds the state after every step; the same call resumes from there. In the end it contains controller.toml,
+/// The folder holds the state after every step; run the same command again to resume. At the end it contains controller.toml,
 /// simulator.json, loop.json, the controllers and logs of all trials, and paths.png.
 #[derive(Args)]
 pub struct Loop {
@@ -36,17 +36,19 @@ pub struct Loop {
     /// Number of the start in the scene, from 1.
     #[arg(long, value_name = "N", default_value_t = 1)]
     start: usize,
-    /// Command that drives the robot, with its first arguments, separated by spaces; CONTROLLER.toml SCENE.toml START
-    /// OUT.csv SEED are appended. `ask` asks a person to drive and to name the log.
+    /// Command that drives the robot. Mindgap appends five arguments: CONTROLLER.toml SCENE.toml START OUT.csv SEED. Quotes
+    /// group words as in a shell, but no shell runs. With `ask`, Mindgap asks a person to drive the robot and to enter the path
+    /// of the log.
     #[arg(long, value_name = "COMMAND")]
     robot: String,
-    /// Timeout of the command.
+    /// Timeout of the command. When it expires, the command and everything it started receive SIGTERM, and SIGKILL three
+    /// seconds later.
     #[arg(long, value_name = "SECONDS", default_value_t = 300, value_parser = value_parser!(u64).range(1..))]
     robot_timeout: u64,
     /// Maximum number of runs on the robot.
     #[arg(long, value_name = "N", default_value_t = 5, value_parser = value_parser!(u32).range(1..=1000))]
     trials: u32,
-    /// Maximum number of steps.
+    /// Maximum number of steps per run.
     #[arg(long, default_value_t = 60, value_parser = value_parser!(u16).range(1..))]
     max_steps: u16,
     /// Random seed.
@@ -84,8 +86,9 @@ impl Run for Loop {
             known: &[],
             seed: self.seed,
         };
-        let command = || CommandRobot { command: self.robot.clone(), timeout: Duration::from_secs(self.robot_timeout) };
-        let robot: &mut dyn TrialRobot = if self.robot == ASK { &mut AskRobot } else { &mut command() };
+        let timeout = Duration::from_secs(self.robot_timeout);
+        let robot: &mut dyn TrialRobot =
+            if self.robot == ASK { &mut AskRobot } else { &mut CommandRobot::new(&self.robot, timeout)? };
         let bar = progress::bar(self.trials.into());
         let state = closed_loop::run(&job, robot, |event| match event {
             Event::Driving(trial) => {

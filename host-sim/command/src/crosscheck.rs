@@ -41,7 +41,11 @@ impl Run for Crosscheck {
     fn run(&self, _: &dyn Executor) -> Result<String> {
         let simulator = textbook::simulator(&self.sim)?;
         let read = |path: &PathBuf| ControllerFile::read_for(path, &simulator.robot);
-        let controller = self.controller.as_ref().map(read).transpose()?.map(|file| file.controller);
+        let file = self.controller.as_ref().map(read).transpose()?;
+        if let (Some(file), Some(path)) = (&file, &self.controller) {
+            file.check_asks(simulator.first_sensor()).map_err(|error| error.or_in_file(path))?;
+        }
+        let controller = file.map(|file| file.controller);
         let logs = super::read_logs_of(&simulator, &self.logs)?;
         let trials = Trials { runs: self.runs as usize, seed: self.seed };
         let bar = progress::bar(self.runs.into());

@@ -1,10 +1,13 @@
-//! Defaults of options from a file `mindgap.toml` next to the logs. Keys are the long names of options: at the top level
-//! for all commands, in a table for one command.
+//! Defaults of options from two files `mindgap.toml`: one next to the logs, and the user's own. Keys are the long names of
+//! options: at the top level for all commands, in a table for one command.
 //!
-//! The accepted keys follow from the definitions of the command line; there is no separate list.
+//! A file next to logs may come from anyone. It says how something is done, but not which programs run or which files are
+//! written, unless the user allows it. The accepted keys follow from the definitions of the command line, and the written
+//! files from what a command [says](Places) that it writes; there is no separate list.
 
 use std::any::TypeId;
-use std::ffi::OsString;
+use std::env;
+use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
 
 use clap::parser::ValueSource;
@@ -12,7 +15,9 @@ use clap::{Arg, ArgAction, ArgMatches, Command};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
+use super::logging::status;
 use mindgap_files as files;
+use mindgap_files::places::Places;
 use mindgap_foundations::error::{Error, Result};
 
 /// File name of the defaults.
@@ -21,53 +26,99 @@ const NAME: &str = "mindgap.toml";
 const LOGS: &str = "logs";
 /// Options that cannot have a default. `force` could overwrite files of others.
 const NEVER: &[&str] = &["force", "help", "version"];
+/// Option that lets a file next to logs set others; such a file cannot set it.
+const ALLOW: &str = "allow";
+/// Options whose value is a program to run, or the folder of its logs, which is no output where it is resumed.
+const PROGRAMS: &[&str] = &["loop.robot", "diagnose.drive", "diagnose.out", "compare.verify"];
 
 /// Defaults that apply to this call.
 #[derive(Default)]
 pub struct Defaults {
-    path: PathBuf,
     applied: Vec<Applied>,
+    /// Files next to logs that would allow options, with the lines.
+    ignored: Vec<(PathBuf, u64)>,
 }
 
 /// One default that applies.
 struct Applied {
+    path: PathBuf,
     line: u64,
+    /// Command and option, such as `loop.robot`.
+    key: String,
     /// The option as clap displays it.
     option: String,
     argument: OsString,
+    /// Whether the file is the user's own.
+    is_own: bool,
 }
 
-/// Returns the call extended by the defaults of its command that it does not set itself.
+/// Returns the call extended by the defaults of its command that it does not set itself. A file next to the logs takes
+/// precedence over the user's own.
 ///
 /// # Errors
-/// If the file cannot be read, has a key that is not an option, or a value of the wrong type.
+/// If a file cannot be read, has a key that is not an option, or a value of the wrong type.
 pub fn with_defaults(command: &Command, mut call: Vec<OsString>) -> Result<(Vec<OsString>, Defaults)> {
     // Building copies the general options to every subcommand.
     let mut command = command.clone();
     command.build();
+    let mut defaults = Defaults::default();
     // Errors in the call are reported when it is parsed with the defaults.
     let Ok(stated) = command.clone().ignore_errors(true).try_get_matches_from(&call) else {
-        return Ok((call, Defaults::default()));
+        return Ok((call, defaults));
     };
-    let chain = chain(&command, &stated);
-    let path = folder(&chain).join(NAME);
-    if !path.is_file() {
-        return Ok((call, Defaults::default()));
+    let near = folder(&chain(&command, &stated)).join(NAME);
+    for (path, is_own) in [Some((near, false)), own_file().map(|path| (path, true))].into_iter().flatten() {
+        if !path.is_file() {
+            continue;
+        }
+        let Ok(stated) = command.clone().ignore_errors(true).try_get_matches_from(&call) else { break };
+        let text = files::read_text(&path)?;
+        let file = File { path: &path, text: &text, is_own };
+        let applied = file.applied(&command, &chain(&command, &stated), &mut defaults.ignored)?;
+        let end = call.iter().position(|argument| argument == "--").unwrap_or(call.len());
+        call.splice(end..end, applied.iter().map(|applied| applied.argument.clone()));
+        defaults.applied.extend(applied);
     }
-    let text = files::read_text(&path)?;
-    let file = File { path: &path, text: &text };
-    let applied = file.applied(&command, &chain)?;
-    let end = call.iter().position(|argument| argument == "--").unwrap_or(call.len());
-    call.splice(end..end, applied.iter().map(|applied| applied.argument.clone()));
-    Ok((call, Defaults { path, applied }))
+    Ok((call, defaults))
+}
+
+/// Returns the path of the user's own defaults: `$XDG_CONFIG_HOME/mindgap/mindgap.toml`, by default in `~/.config`.
+fn own_file() -> Option<PathBuf> {
+    let absolute = |name: &str| env::var_os(name).map(PathBuf::from).filter(|folder| folder.is_absolute());
+    let folder = absolute("XDG_CONFIG_HOME").or_else(|| Some(env::home_dir()?.join(".config")))?;
+    Some(folder.join("mindgap").join(NAME))
 }
 
 impl Defaults {
-    /// Logs the defaults that apply.
+    /// Logs the defaults that apply, and warns of those that are ignored.
     pub fn log(&self) {
-        for Applied { line, argument, .. } in &self.applied {
-            log::info!("{}:{line}: {}", self.path.display(), argument.to_string_lossy());
+        for (path, line) in &self.ignored {
+            log::warn!("{}:{line}: {ALLOW} is ignored in a file next to logs", path.display());
         }
+        for Applied { path, line, argument, .. } in &self.applied {
+            log::info!("{}:{line}: {}", path.display(), argument.to_string_lossy());
+        }
+    }
+
+    /// Checks that no file next to logs sets which programs run or which files are written, except for the options in
+    /// `allowed`, such as `loop.robot`. Prints the settings of this kind.
+    ///
+    /// # Errors
+    /// If a file sets an option that is not allowed.
+    pub fn check(&self, places: &Places, allowed: &[String]) -> Result<()> {
+        let outputs: Vec<PathBuf> = places.outputs().collect();
+        for applied in self.applied.iter().filter(|applied| applied.runs_or_writes(&outputs)) {
+            let Applied { path, line, key, argument, is_own, .. } = applied;
+            if !is_own && !allowed.contains(key) {
+                let what = format!(
+                    "a file next to logs cannot set {key}, which decides what is run or written: set it on the command line \
+                     or in your own mindgap.toml, or add --allow {key}"
+                );
+                return Err(Error::at_line(path, *line, what));
+            }
+            status(&format!("{}:{line}: {}", path.display(), argument.to_string_lossy()));
+        }
+        Ok(())
     }
 
     /// Returns the error with the line of the default that caused it; exits the process if the call itself is wrong.
@@ -77,10 +128,22 @@ impl Defaults {
         match option {
             Some(applied) if error.use_stderr() => {
                 let first = words.lines().next().unwrap_or_default();
-                Error::at_line(&self.path, applied.line, first.trim_start_matches("error: "))
+                Error::at_line(&applied.path, applied.line, first.trim_start_matches("error: "))
             }
             _ => error.exit(),
         }
+    }
+}
+
+impl Applied {
+    /// Returns whether the option is a program, or its value one of the files and folders that the command writes.
+    fn runs_or_writes(&self, outputs: &[PathBuf]) -> bool {
+        let bytes = self.argument.as_encoded_bytes();
+        let is_value = |path: &PathBuf| {
+            let path: &OsStr = path.as_ref();
+            bytes.strip_suffix(path.as_encoded_bytes()).is_some_and(|before| before.ends_with(b"="))
+        };
+        PROGRAMS.contains(&self.key.as_str()) || outputs.iter().any(is_value)
     }
 }
 
@@ -106,11 +169,17 @@ fn folder(chain: &[(&Command, &ArgMatches)]) -> PathBuf {
 struct File<'f> {
     path: &'f Path,
     text: &'f str,
+    is_own: bool,
 }
 
 impl File<'_> {
     /// Returns the defaults for a chain of commands; the table of the innermost command takes precedence.
-    fn applied(&self, command: &Command, chain: &[(&Command, &ArgMatches)]) -> Result<Vec<Applied>> {
+    fn applied(
+        &self,
+        command: &Command,
+        chain: &[(&Command, &ArgMatches)],
+        ignored: &mut Vec<(PathBuf, u64)>,
+    ) -> Result<Vec<Applied>> {
         let parsed = DeTable::parse(self.text).map_err(|e| {
             let line = e.span().map_or(1, |span| files::line_at(self.text, span.start));
             Error::at_line(self.path, line, e.message().replace('\n', "; "))
@@ -141,15 +210,24 @@ impl File<'_> {
                 .filter(|other| is_stated(other))
                 .any(|other| conflict(option, other) || conflict(other, option))
         };
+        let commands = chain[1..].iter().map(|(command, _)| command.get_name()).collect::<Vec<_>>().join(".");
         let mut applied = Vec::new();
         for option in called.get_arguments() {
             let Some(name) = option.get_long() else { continue };
             let Some((key, value)) = tables.iter().rev().find_map(|table| table.get_key_value(name)) else { continue };
-            if !is_stated(option) && !is_ruled_out(option) {
-                let line = files::line_at(self.text, key.span().start);
+            let line = files::line_at(self.text, key.span().start);
+            if name == ALLOW && !self.is_own {
+                ignored.push((self.path.to_owned(), line));
+            } else if !is_stated(option) && !is_ruled_out(option) {
                 let arguments = self.arguments(option, value)?;
-                let option = option.to_string();
-                applied.extend(arguments.map(|argument| Applied { line, option: option.clone(), argument }));
+                applied.extend(arguments.map(|argument| Applied {
+                    path: self.path.to_owned(),
+                    line,
+                    key: format!("{commands}.{name}"),
+                    option: option.to_string(),
+                    argument,
+                    is_own: self.is_own,
+                }));
             }
         }
         Ok(applied)

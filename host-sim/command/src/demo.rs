@@ -57,7 +57,7 @@ pub struct DemoResults<'a> {
     networks: &'a Networks,
     /// Success of each start's controller.
     starts: &'a [StartSummary],
-    /// What the loop did about a fault.
+    /// How the loop corrected a fault.
     repair: RepairResults,
 }
 
@@ -89,7 +89,7 @@ impl Run for Demo {
         let watch = |stage: Stage| {
             let words = match stage {
                 Stage::Recording => "recording logs of the built-in robot".into(),
-                Stage::Training(p) => progress::training_words(p.network, p.evaluations),
+                Stage::Training(ref p) => progress::training_words(&p.network, p.evaluations),
                 Stage::Evolving { start, generation, generations } => {
                     format!("evolving for start {start}: generation {} of {generations}", generation + 1)
                 }

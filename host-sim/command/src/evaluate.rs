@@ -6,14 +6,15 @@ use clap::Args;
 
 use super::json_output::JsonOption;
 use super::table::{self, number};
-use super::{Run, kinds, progress, textbook};
+use super::{Run, kinds, progress, textbook, warn};
 use mindgap_figures::pictures;
 use mindgap_files as files;
 use mindgap_files::places::Places;
 use mindgap_foundations::error::Result;
 use mindgap_foundations::executor::Executor;
-use mindgap_learning::evaluation::accuracy::{self, Evaluation, Networks};
+use mindgap_learning::evaluation::accuracy::{self, Evaluation, Networks, OfSensor, Probability, Value};
 use mindgap_learning::evaluation::sensor_models::SensorModels;
+use mindgap_logs::robot::same_robot;
 use mindgap_pages::evaluation::{Subject, page};
 
 /// Evaluate a simulator's networks on held-out logs.
@@ -41,19 +42,22 @@ impl Run for Evaluate {
 
     fn run(&self, _: &dyn Executor) -> Result<String> {
         let simulator = textbook::simulator(&self.sim)?;
-        let logs = super::read_logs_of(&simulator, &self.logs)?;
+        let heard = super::read_sound_logs_by_sensor(&self.logs)?;
+        let logs = &heard[0].logs;
+        same_robot(&simulator.robot, &logs.robot)?;
         let bar = progress::shares();
-        let evaluation = accuracy::evaluate(&simulator, &logs, progress::part(&bar, 0..100, "evaluating the networks"));
+        let watch = progress::part(&bar, 0..100, "evaluating the networks");
+        let evaluation = accuracy::evaluate_sensors(&simulator, &heard, watch, warn);
         bar.finish_and_clear();
         let evaluation = evaluation?;
         if let Some(path) = &self.html {
             let names = [&self.sim, &self.logs].map(|path| path.display().to_string());
             let names = names.each_ref().map(String::as_str);
-            let subject = Subject { evaluation: &evaluation, simulator: &simulator, logs: &logs, names };
+            let subject = Subject { evaluation: &evaluation, simulator: &simulator, logs, names };
             files::write(path, page(&subject))?;
         }
         if let Some(folder) = &self.figures {
-            pictures::networks(folder, &simulator, &evaluation, &logs)?;
+            pictures::networks(folder, &simulator, &evaluation, logs)?;
         }
         self.json.emit(&evaluation, describe(&evaluation))
     }
@@ -96,34 +100,36 @@ fn sensor_models(models: &SensorModels) -> String {
 
 /// Returns the accuracy of every network as tables.
 pub fn accuracy(networks: &Networks) -> String {
-    let Networks { turn, forward, lateral, echo_probability, echo_value } = networks;
+    let Networks { turn, forward, lateral, echo_value, named, .. } = networks;
+    let [turn, forward, lateral] = [turn, forward, lateral].map(Option::as_ref);
+    let reading = networks.unnamed_value();
     let values =
-        [("turn (deg)", turn), ("forward (cm)", forward), ("lateral (cm)", lateral), ("echo value (cm)", echo_value)];
-    let rows: Vec<[String; 6]> = values
-        .into_iter()
-        .filter_map(|(name, value)| Some((name, value.as_ref()?)))
-        .map(|(name, v)| {
-            let (slope, intercept) = v.trend.map(|t| (t.slope, t.intercept)).unzip();
-            let trend = [number(slope, 3), number(intercept, 2)];
-            let [slope, intercept] = trend;
-            [name.into(), number(v.r2, 4), number(Some(v.mse), 4), slope, intercept, v.n.to_string()]
-        })
-        .collect();
+        [("turn (deg)", turn), ("forward (cm)", forward), ("lateral (cm)", lateral), ("echo value (cm)", reading)];
+    let row = |(name, v): (&str, &Value)| {
+        let (slope, intercept) = v.trend.map(|t| (t.slope, t.intercept)).unzip();
+        let trend = [number(slope, 3), number(intercept, 2)];
+        let [slope, intercept] = trend;
+        [name.into(), number(v.r2, 4), number(Some(v.mse), 4), slope, intercept, v.n.to_string()]
+    };
+    let values = values.into_iter().filter_map(|(name, value)| Some((name, value?)));
+    let rows: Vec<[String; 6]> = values.chain(networks.named_values()).map(row).collect();
     let mut text = table::text(["network", "R2", "MSE", "slope", "intercept", "n"], &rows);
     if let Some(mae_cm) = echo_value.as_ref().and_then(|v| v.mae_cm) {
         text += &format!("echo value: mean absolute error {mae_cm:.2} cm\n");
     }
-    if let Some(p) = echo_probability {
-        let row = [
-            "echo".to_string(),
-            number(Some(p.brier), 4),
-            number(Some(p.log_loss), 4),
-            number(p.auc, 4),
-            number(p.r2, 4),
-            p.n.to_string(),
-        ];
+    let row = |(name, p): (&str, &Probability)| {
+        let [brier, log_loss] = [p.brier, p.log_loss].map(|score| number(Some(score), 4));
+        [name.into(), brier, log_loss, number(p.auc, 4), number(p.r2, 4), p.n.to_string()]
+    };
+    let of_sensors = named.iter().filter_map(|(name, of)| match of {
+        OfSensor::Probability(probability) => Some((name.as_str(), probability)),
+        OfSensor::Value(_) => None,
+    });
+    let first = networks.unnamed_probability().map(|probability| ("echo", probability));
+    let rows: Vec<[String; 6]> = first.into_iter().chain(of_sensors).map(row).collect();
+    if !rows.is_empty() {
         let header = ["probability", "Brier", "log loss", "AUC", "R2", "n"];
-        text += &format!("\n{}", table::text(header, &[row]));
+        text += &format!("\n{}", table::text(header, &rows));
     }
     text
 }

@@ -52,11 +52,14 @@ pub struct Evolve {
     /// slower. --paper and --paper-noise use the networks.
     #[arg(long, value_parser = one_of::<SensorModel>(SENSOR_MODELS), default_value = "beam", conflicts_with_all = ["paper", "paper_noise"])]
     sonar: SensorModel,
-    /// Maximum number of steps.
+    /// Maximum number of steps per run.
     #[arg(long, default_value_t = 60, value_parser = value_parser!(u16).range(1..))]
     max_steps: u16,
     #[command(flatten)]
     json: JsonOption,
+    /// Range sensor that the controller asks (default: `[ultrasonic]`, or the first `[[range_sensor]]` where there is none).
+    #[arg(long, value_name = "NAME")]
+    sensor: Option<String>,
     /// Draw simulated runs of the controller into this folder, as SVG and PNG.
     #[arg(long, value_name = "DIR")]
     figures: Option<PathBuf>,
@@ -82,7 +85,7 @@ pub struct EvolveResults<'a> {
     /// Success in new simulated runs.
     #[serde(flatten)]
     success: Success,
-    /// Success probability over the robots that the logs leave possible; null if the simulator has no such robots.
+    /// Success probability over the robots that are consistent with the logs; null if the simulator has no such robots.
     chance: Option<SuccessProbability>,
 }
 
@@ -95,6 +98,8 @@ impl Run for Evolve {
 
     fn run(&self, executor: &dyn Executor) -> Result<String> {
         let simulator = textbook::simulator(&self.sim)?;
+        let sensor = self.sensor.clone().filter(|sensor| sensor != simulator.first_sensor());
+        let simulator = sensor.as_deref().map(|sensor| simulator.asking(sensor)).transpose()?.unwrap_or(simulator);
         let scene = Scene::read(&self.scene)?;
         let start = start_of(&scene, self.start, &simulator.robot, &self.scene)?;
         let request = Request {
@@ -129,7 +134,8 @@ impl Run for Evolve {
             let title = format!("Start {}", self.start);
             pictures::paths(folder, &[pictures::simulated_paths(title, &scene, start, &rollouts)])?;
         }
-        ControllerFile { controller: evolved.controller, origin: Some(origin) }.write(&self.out)?;
+        let sensors = std::array::from_fn(|_| sensor.clone());
+        ControllerFile { controller: evolved.controller, sensors, origin: Some(origin) }.write(&self.out)?;
         let results = EvolveResults {
             schema: SchemaNumber,
             controller: &self.out,

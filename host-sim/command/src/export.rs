@@ -7,15 +7,19 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 use mindgap_controller_export::budget::Budget;
+use mindgap_controller_export::c_monitor::c_monitor;
 use mindgap_controller_export::c_networks::c_networks;
-use mindgap_controller_export::collect::CollectOptions;
+use mindgap_controller_export::collect::{CollectOptions, Commands};
 use mindgap_controller_export::names::{BrickName, RunLogs};
 use mindgap_controller_export::nxc::{self, NxcOptions};
 use mindgap_controller_export::nxc_networks::{self, NetworksBudget, nxc_networks};
 use mindgap_controller_export::onboard::Safety;
 use mindgap_controller_export::pybricks_networks::{PybricksNetwork, pybricks_networks};
+use mindgap_controller_export::rust_monitor::rust_monitor;
 use mindgap_controller_export::rust_networks::rust_networks;
-use mindgap_controller_export::{ExportError, Origin, arduino, c, collect as data_collection, pybricks, rust, rxe};
+use mindgap_controller_export::{
+    ExportError, Origin, arduino, c, collect as data_collection, pybricks, pybricks_collect, rust, rxe,
+};
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -28,7 +32,9 @@ use mindgap_foundations::error::{Error, Result};
 use mindgap_foundations::executor::Executor;
 use mindgap_foundations::schema_number::SchemaNumber;
 use mindgap_logs::controller_file::ControllerFile;
+use mindgap_logs::range_sensor::ULTRASONIC;
 use mindgap_models::simulator::fixed_point::{COMMANDS, DOCUMENTATION, FACING, FixedNetworks};
+use mindgap_models::simulator::monitor::MonitorLaw;
 use mindgap_models::simulator::{Learned, Simulator};
 
 /// Export a controller as an onboard program.
@@ -36,16 +42,16 @@ use mindgap_models::simulator::{Learned, Simulator};
 /// Also exports a simulator's networks as constants for a board, and the program that collects a robot's first logs.
 #[derive(Args)]
 pub struct Export {
-    /// Controller file; or a simulator file, for all formats but rxe and nxc-collect. For nxc-collect none, or a run
-    /// whose commands serve as the script.
+    /// Controller file; or a simulator file, for all formats but rxe and those that collect. For nxc-collect and
+    /// pybricks-collect none, or a run whose commands serve as the script.
     #[arg(
         value_name = "CONTROLLER",
         required_if_eq_any = [("format", "nxc"), ("format", "rxe"), ("format", "rust"), ("format", "c"), ("format", "pybricks"), ("format", "arduino")]
     )]
     input: Option<PathBuf>,
-    /// Output format.
+    /// Output format (default: by the ending of --out: .nxc, .rxe, .rs, .c or .h, .ino, .py).
     #[arg(long, value_enum)]
-    format: Format,
+    format: Option<Format>,
     /// The file to write.
     #[arg(long)]
     out: PathBuf,
@@ -64,6 +70,9 @@ pub struct Export {
     /// Stop the robot when a driven wheel does not turn.
     #[arg(long)]
     stall: bool,
+    /// Also export the simulator's monitor, which finds out on board whether the robot has changed.
+    #[arg(long)]
+    monitor: bool,
     #[command(flatten)]
     json: JsonOption,
     #[command(flatten)]
@@ -147,10 +156,13 @@ enum Format {
     C,
     /// Arduino sketch; for a simulator, a header to include in one.
     Arduino,
-    /// MicroPython program for hubs with Pybricks firmware; for a simulator, a module to import in one.
+    /// MicroPython program for an NXT, EV3, SPIKE or Technic hub with Pybricks firmware; for a simulator, a module to
+    /// import in one.
     Pybricks,
     /// NXC source of a program that drives at random or by a script, and logs.
     NxcCollect,
+    /// MicroPython program for hubs with Pybricks firmware that drives at random or by a script, and prints a log.
+    PybricksCollect,
 }
 
 impl Run for Export {
@@ -160,19 +172,30 @@ impl Run for Export {
     }
 
     fn run(&self, _: &dyn Executor) -> Result<String> {
-        if (self.log.is_some() || self.display) && !matches!(self.format, Format::Nxc) {
+        if (self.log.is_some() || self.display) && !matches!(self.format()?, Format::Nxc) {
             return Err(Error::new("--log and --display need a controller and --format nxc"));
         }
-        let runs_on_a_brick = matches!(self.format, Format::Nxc | Format::Rxe | Format::NxcCollect);
+        let runs_on_a_brick = matches!(self.format()?, Format::Nxc | Format::Rxe | Format::NxcCollect);
         if self.safety() != Safety::default() && !runs_on_a_brick {
             return Err(Error::new(
                 "--stop-cm and --stall need a program for a brick: --format nxc, rxe or nxc-collect",
             ));
         }
+        if self.monitor && !matches!(self.format()?, Format::C | Format::Arduino | Format::Rust) {
+            return Err(Error::new("--monitor needs a simulator and --format c, arduino or rust"));
+        }
         let (program, budget) = match &self.input {
-            None => self.collection(self.collect.options(self.program_name()?, self.ports.wiring()))?,
+            None if self.format.is_none() => {
+                let what =
+                    "a controller or a simulator is needed; --format nxc-collect and pybricks-collect alone need none";
+                return Err(Error::new(what));
+            }
+            None => self.collection(self.collect.random())?,
             // Simulators are JSON; no TOML file begins with a brace.
             Some(input) if files::read_text(input)?.trim_start().starts_with('{') => self.networks(input)?,
+            Some(input) if self.monitor => {
+                return Err(Error::in_file(input, "is no simulator, which --monitor needs"));
+            }
             Some(input) => self.onboard(input)?,
         };
         let bytes = program.len();
@@ -185,41 +208,57 @@ impl Run for Export {
 }
 
 impl Export {
-    fn collection(&self, options: CollectOptions) -> Result<(Vec<u8>, Option<Takes>)> {
+    fn collection(&self, (step_ms, commands): (u16, Commands)) -> Result<(Vec<u8>, Option<Takes>)> {
         let named = self.input.as_ref().unwrap_or(&self.out);
-        let options = CollectOptions { safety: self.safety(), ..options };
-        let source = data_collection::program(&options).map_err(|e| Error::in_file(named, e.to_string()))?;
+        let refused = |e: ExportError| Error::in_file(named, e.to_string());
+        if let Format::PybricksCollect = self.format()? {
+            return Ok((pybricks_collect::program(step_ms, &commands).map_err(refused)?.into_bytes(), None));
+        }
+        let (program, wiring, safety) = (self.program_name()?, self.ports.wiring(), self.safety());
+        let options = CollectOptions { program, wiring, safety, step_ms, commands };
+        let source = data_collection::program(&options).map_err(refused)?;
         Ok((source.into_bytes(), Some(data_collection::budget(&options).into())))
     }
 
     fn networks(&self, input: &Path) -> Result<(Vec<u8>, Option<Takes>)> {
         let simulator = Simulator::read(input)?;
+        let law = self.monitor.then(|| MonitorLaw::of(&simulator)).transpose();
+        let law = law.map_err(|error| error.or_in_file(input))?;
         let quantised = || FixedNetworks::quantise(&simulator).map_err(|error| error.or_in_file(input));
-        match self.format {
-            Format::Rust => Ok((rust_networks(&quantised()?.rust_definitions()).into_bytes(), None)),
+        match self.format()? {
+            Format::Rust => {
+                let monitor = law.map_or(String::new(), |law| format!("\n{}", rust_monitor(&law.law())));
+                Ok(((rust_networks(&quantised()?.rust_definitions()) + &monitor).into_bytes(), None))
+            }
             Format::Nxc => {
                 let networks = quantised()?.tabulated(["Turn", "Forward", "Lateral", "EchoProbability", "EchoValue"]);
                 Ok((nxc_networks(&networks).into_bytes(), Some(nxc_networks::budget(&networks).into())))
             }
-            Format::C | Format::Arduino => Ok((c_networks(&quantised()?.tabulated(NAMES)).into_bytes(), None)),
+            Format::C | Format::Arduino => {
+                let monitor = law.as_ref().map(monitor_in_c).unwrap_or_default();
+                Ok((c_networks(&quantised()?.tabulated(NAMES), &monitor).into_bytes(), None))
+            }
             Format::Pybricks => {
                 let networks = float_networks(&simulator).map_err(|error| error.or_in_file(input))?;
                 Ok((pybricks_networks(&networks).into_bytes(), None))
             }
-            Format::Rxe | Format::NxcCollect => {
-                Err(Error::in_file(input, "contains networks, which the formats rxe and nxc-collect do not support"))
-            }
+            Format::Rxe | Format::NxcCollect | Format::PybricksCollect => Err(Error::in_file(
+                input,
+                "contains networks, which the formats rxe, nxc-collect and pybricks-collect do not support",
+            )),
         }
     }
 
     fn onboard(&self, input: &Path) -> Result<(Vec<u8>, Option<Takes>)> {
         let read = || {
             let file = ControllerFile::read(input)?;
+            // A program reads the one sensor on its port; which one of the robot's that is, the wiring decides.
+            file.sensor(ULTRASONIC).map_err(|error| error.or_in_file(input))?;
             let origin = Origin::from(&file);
             Ok((file.controller, origin))
         };
         let refused = |e: ExportError| Error::in_file(input, e.to_string());
-        Ok(match self.format {
+        Ok(match self.format()? {
             Format::Rxe => {
                 self.program_name()?;
                 let (controller, _) = read()?;
@@ -228,9 +267,7 @@ impl Export {
                     Some(rxe::budget(&controller, self.safety()).into()),
                 )
             }
-            Format::NxcCollect => {
-                self.collection(collect::script(input, self.program_name()?, self.ports.wiring())?)?
-            }
+            Format::NxcCollect | Format::PybricksCollect => self.collection(collect::script(input)?)?,
             Format::Rust => {
                 let (controller, origin) = read()?;
                 (rust::module(&controller, &origin).map_err(refused)?.into_bytes(), None)
@@ -258,6 +295,21 @@ impl Export {
         })
     }
 
+    /// Returns the format that was given, or that of the output's ending.
+    fn format(&self) -> Result<Format> {
+        let ending = self.out.extension().unwrap_or_default().to_ascii_lowercase();
+        Ok(match (self.format, ending.to_str()) {
+            (Some(format), _) => format,
+            (None, Some("nxc")) => Format::Nxc,
+            (None, Some("rxe")) => Format::Rxe,
+            (None, Some("rs")) => Format::Rust,
+            (None, Some("c" | "h")) => Format::C,
+            (None, Some("ino")) => Format::Arduino,
+            (None, Some("py")) => Format::Pybricks,
+            _ => return Err(Error::in_file(&self.out, "has an ending that stands for no format: give --format")),
+        })
+    }
+
     fn safety(&self) -> Safety {
         Safety { stop_cm: self.stop_cm, stall: self.stall }
     }
@@ -278,6 +330,11 @@ impl Export {
 
 /// Names of the networks in C and Python.
 const NAMES: [&str; 5] = ["turn", "forward", "lateral", "echo_probability", "echo_value"];
+
+fn monitor_in_c(law: &MonitorLaw) -> String {
+    let names: Vec<&str> = law.names().iter().map(|named| named.name).collect();
+    c_monitor(&law.law(), &names)
+}
 
 fn float_networks(simulator: &Simulator) -> Result<[PybricksNetwork; 5]> {
     simulator.need_no_filter()?;

@@ -5,6 +5,7 @@ use std::path::Path;
 use super::{fleet_text, progress};
 use mindgap_applications::fleet::{self, ANSWER, DIAGNOSES, Fleet, TABLE};
 use mindgap_diagnosis::request::Request;
+use mindgap_diagnosis::verdict::Verdict;
 use mindgap_files as files;
 use mindgap_foundations::error::{Error, Result};
 use mindgap_foundations::executor::Executor;
@@ -31,11 +32,11 @@ pub struct FleetRequest<'a> {
 }
 
 impl FleetRequest<'_> {
-    /// Diagnoses the fleet, writes the results and returns the report for the terminal.
+    /// Diagnoses the fleet, writes the results, and returns the report for the terminal and whether any robot has a gap.
     ///
     /// # Errors
     /// If no robot can be diagnosed, or a file cannot be read or written.
-    pub fn answer(&self) -> Result<String> {
+    pub fn answer(&self) -> Result<(String, bool)> {
         if self.apply.is_some() && self.request.simulator.is_none() {
             return Err(Error::new("--apply with --fleet needs a simulator file"));
         }
@@ -50,7 +51,8 @@ impl FleetRequest<'_> {
                 simulator.write(path)?;
             }
         }
-        Ok(text)
+        let has_gap = found.verdicts.keys().any(|verdict| *verdict != Verdict::NoGap.id());
+        Ok((text, has_gap))
     }
 
     /// Diagnoses the fleet and writes its folder.

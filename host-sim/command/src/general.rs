@@ -25,6 +25,10 @@ pub struct General {
     /// Log decisions to standard error.
     #[arg(short, long, global = true)]
     verbose: bool,
+    /// Let mindgap.toml next to the logs set this option, although it decides what is run or written; repeatable. Example:
+    /// loop.robot.
+    #[arg(long, global = true, value_name = "COMMAND.OPTION")]
+    pub allow: Vec<String>,
 }
 
 impl General {

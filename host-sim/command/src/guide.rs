@@ -45,6 +45,7 @@ const WORK: &[Part] = &[
             ("export", "mindgap export controller.toml --format nxc --out controller.nxc"),
             ("brick", "mindgap brick controller.rxe --scene scene.toml"),
             ("crosscheck", "mindgap crosscheck simulator.json logs"),
+            ("monitor", "mindgap monitor simulator.json robot-logs"),
         ],
     ),
     (
@@ -56,8 +57,14 @@ const WORK: &[Part] = &[
                  a textbook differential drive and an ideal sonar, from robot.toml alone\n  mindgap diagnose \
                  simulator.json robots --fleet answer    for many robots, one folder of logs each",
             ),
+            (
+                "compare",
+                "mindgap compare simulator.mcap --real robot.mcap --robot robot.toml --html gap.html\n  mindgap compare \
+                 simulator-logs --real robot-logs --patch robot.urdf=patched.urdf    writes the causes into a model file",
+            ),
             ("explain", "mindgap explain payload"),
             ("challenge", "mindgap challenge --help"),
+            ("serve", "mindgap serve --port 8000    for people who prefer a browser"),
         ],
     ),
     (

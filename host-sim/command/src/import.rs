@@ -18,6 +18,7 @@ use mindgap_foundations::executor::Executor;
 use mindgap_foundations::schema_number::SchemaNumber;
 use mindgap_import::brick::import;
 use mindgap_import::report::{LogReport, Report, RunReport, TrackReport};
+use mindgap_import::statements::Statements;
 use mindgap_import::units::{Angle, Length, Time, Units};
 use mindgap_logs::{Robot, Scene};
 
@@ -41,7 +42,7 @@ enum Way {
 #[derive(Args)]
 struct Brick {
     /// Brick logs and camera tracks in any order; their kind is detected from the first line. Tracks are CSV with time,
-    /// x, y and heading (time_s, x_m, y_m, yaw_rad and the like), or rigid bodies exported by Motive.
+    /// x, y and heading (time_s, x_m, y_m, yaw_rad and the like), TUM, or exports of Motive, Vicon or Qualisys.
     #[arg(value_name = "BRICK_LOG|CAMERA_TRACK", required = true)]
     files: Vec<PathBuf>,
     /// Scene in which the robot drove.
@@ -62,6 +63,9 @@ struct Brick {
     /// Unit of the track's heading column, if its name states none.
     #[arg(long, value_name = "UNIT", value_parser = one_of::<Angle>(ANGLES))]
     angle_unit: Option<Angle>,
+    /// Name of the robot's body in a motion capture (default: the one that moves as the wheels do).
+    #[arg(long, value_name = "NAME")]
+    body: Option<String>,
     // Not `JsonOption`: clap misses that an optional flattened group is present if that group flattens another.
     /// Write the results as JSON (`-`: to standard output, instead of the text).
     #[arg(long, value_name = "FILE")]
@@ -107,11 +111,13 @@ impl Run for Brick {
 
     fn run(&self, _: &dyn Executor) -> Result<String> {
         let units = Units { time: self.time_unit, length: self.length_unit, angle: self.angle_unit };
-        let (robot, scene) = (Robot::read(&self.robot)?, Scene::read(&self.scene)?);
+        let stated = Statements { units, body: self.body.clone(), ..Statements::default() };
+        let ((robot, sensors), scene) = (Robot::read_all(&self.robot)?, Scene::read(&self.scene)?);
         let bar = progress::bar(self.files.len() as u64);
-        let imported = import(&self.files, &units, robot, scene, warn, progress::counting(&bar));
+        let imported = import(&self.files, &stated, robot, scene, warn, progress::counting(&bar));
         bar.finish_and_clear();
         let (logs, report) = imported?;
+        let logs = logs.of_first(sensors, warn);
         logs.write(&self.out)?;
         let text = format!("{}{}: {}\n", describe(&report), self.out.display(), count(logs.runs.len(), "run"));
         let results = ImportResults { schema: SchemaNumber, report: &report };
@@ -120,38 +126,47 @@ impl Run for Brick {
 }
 
 fn describe(report: &Report) -> String {
-    let tracks = report.tracks.iter().map(|TrackReport { file, frames, lost, jumps }| {
+    let tracks = report.tracks.iter().map(|TrackReport { file, body, frames, lost, jumps }| {
         let left_out = match (lost, jumps) {
             (0, 0) => String::new(),
             _ => format!("; excluded: {lost} without a pose, {jumps} impossible jumps"),
         };
-        format!("{}: {frames} frames{left_out}\n", file.display())
+        let of = body.as_ref().map_or(String::new(), |body| format!(" of {body}"));
+        format!("{}: {frames} frames{of}{left_out}\n", file.display())
     });
     let mut text: String = tracks.collect();
     let runs = report.logs.iter().filter_map(|log| Some((log, log.run.as_ref()?)));
     let rows: Vec<[String; 7]> = runs.map(|(log, run)| row(log, run)).collect();
     let header = ["log", "run", "offset (ms)", "drift (ppm)", "mismatch (%)", "rows", "without pose"];
     text += &table::text(header, &rows);
-    for LogReport { file, truncated, left_out, .. } in &report.logs {
+    for LogReport { file, truncated, run, left_out } in &report.logs {
         if *truncated {
             text += &format!("{}: the last line is incomplete and was excluded\n", file.display());
+        }
+        let within_rows = run.as_ref().map_or(0, |run| run.changes_within_rows);
+        if within_rows > 0 {
+            text += &format!(
+                "{}: {within_rows} commands changed within a row, which holds their mean; the counters show when\n",
+                file.display()
+            );
         }
         if let Some(why) = left_out {
             text += &format!("{}: excluded, {why}\n", file.display());
         }
     }
+    text += &recordings::excluded(&report.left_out);
     text
 }
 
 fn row(log: &LogReport, run: &RunReport) -> [String; 7] {
-    let RunReport { name, offset_ms, drift, unexplained, rows, outside, in_gaps, .. } = run;
+    let RunReport { name, body, offset_ms, drift, unexplained, rows, outside, in_gaps, .. } = run;
     let without = match (outside, in_gaps) {
         (0, 0) => "0".into(),
         _ => format!("{outside} outside the track, {in_gaps} in gaps"),
     };
     [
         log.file.display().to_string(),
-        name.clone(),
+        body.as_ref().map_or_else(|| name.clone(), |body| format!("{name} ({body})")),
         format!("{offset_ms:.0}"),
         format!("{:.0}", 1e6 * drift),
         format!("{:.1}", 100.0 * unexplained),

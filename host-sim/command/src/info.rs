@@ -12,22 +12,27 @@ use serde_json::Value;
 
 use super::json_output::JsonOption;
 use super::kinds;
-use super::table::count;
+use super::table::{self, count};
+use mindgap_diagnosis::scope::of_sensor;
 use mindgap_files as files;
 use mindgap_files::places::Places;
 use mindgap_foundations::error::{Error, Result};
 use mindgap_foundations::executor::Executor;
 use mindgap_foundations::schema_number::SchemaNumber;
+use mindgap_import::bag;
+use mindgap_import::contents::{Contents, StreamContents};
 use mindgap_logs::controller_file::ControllerFile;
+use mindgap_logs::range_sensor::Sensors;
 use mindgap_logs::{Logs, Robot, Run, Scene};
 use mindgap_models::effects::own;
 use mindgap_models::simulator::Simulator;
 
-/// Identify a file or folder and summarise its contents.
+/// Identify files or folders and summarise their contents: of recordings the columns or topics, rates, time span and bodies.
 #[derive(Args)]
 pub struct Info {
-    /// File or folder to identify.
-    path: PathBuf,
+    /// Files or folders to identify.
+    #[arg(required = true)]
+    paths: Vec<PathBuf>,
     #[command(flatten)]
     json: JsonOption,
 }
@@ -37,10 +42,18 @@ pub struct Info {
 pub struct InfoResults<'a> {
     /// Version of the JSON.
     schema: SchemaNumber<1>,
+    /// The files or folders.
+    files: Vec<Described<'a>>,
+}
+
+/// A file or folder.
+#[derive(Serialize, JsonSchema)]
+struct Described<'a> {
     /// The file or folder.
     path: &'a Path,
-    /// What it is, in words.
-    what: String,
+    /// What it holds; only recordings have streams.
+    #[serde(flatten)]
+    contents: Contents,
 }
 
 /// Output files that are not read again, by extension.
@@ -73,15 +86,39 @@ const LISTS: &[(&str, &str)] = &[
 
 impl super::Run for Info {
     fn places(&self) -> Places {
-        Places::default().reading([&self.path]).writing(self.json.path(), kinds::REPORT)
+        Places::default().reading(&self.paths).writing(self.json.path(), kinds::REPORT)
     }
 
     fn run(&self, _: &dyn Executor) -> Result<String> {
-        let path = self.path.as_path();
-        let what = if path.is_dir() { folder(path)? } else { file(path)? };
-        let text = format!("{}: {what}\n", path.display());
-        self.json.emit_sorted(&InfoResults { schema: SchemaNumber, path, what }, text)
+        let described = |path: &'_ PathBuf| {
+            let what = |kind| Contents { kind, seconds: None, streams: Vec::new(), bodies: Vec::new() };
+            match path.is_dir() {
+                _ if bag::is_bag(path) => bag::contents(path),
+                true => folder(path).map(what),
+                false => file(path, what),
+            }
+        };
+        let files = self.paths.iter().map(|path| Ok(Described { path, contents: described(path)? }));
+        let files = files.collect::<Result<Vec<_>>>()?;
+        let text = files.iter().map(text).collect();
+        self.json.emit_sorted(&InfoResults { schema: SchemaNumber, files }, text)
     }
+}
+
+fn text(Described { path, contents }: &Described) -> String {
+    let Contents { kind, seconds, streams, bodies } = contents;
+    let span = seconds.map_or(String::new(), |seconds| format!(", {seconds:.1} s"));
+    let of =
+        |bodies: &[String]| if bodies.is_empty() { String::new() } else { format!("; bodies: {}", bodies.join(", ")) };
+    let mut text = format!("{}: {kind}{span}{}\n", path.display(), of(bodies));
+    if !streams.is_empty() {
+        let row = |stream: &StreamContents| {
+            let StreamContents { name, r#type, rate_hz, rows } = stream;
+            [name.clone(), r#type.clone(), rate_hz.map_or("-".into(), |hz| format!("{hz:.1}")), rows.to_string()]
+        };
+        text += &table::text(["name", "type", "rate (Hz)", "rows"], &streams.iter().map(row).collect::<Vec<_>>());
+    }
+    text
 }
 
 fn folder(path: &Path) -> Result<String> {
@@ -93,28 +130,49 @@ fn folder(path: &Path) -> Result<String> {
     }
     let logs = Logs::read(path, super::warn)?;
     let (runs, rows, step_ms) = (logs.runs.len(), logs.rows(), logs.robot.step_ms);
-    Ok(format!("logs of {}, {rows} rows, {step_ms} ms apart; see `mindgap check`", count(runs, "run")))
+    let sensors = with_sensors(&logs.sensors());
+    Ok(format!("logs of {}, {rows} rows, {step_ms} ms apart{sensors}; see `mindgap check`", count(runs, "run")))
 }
 
-fn file(path: &Path) -> Result<String> {
+/// Names range sensors where there is another than `[ultrasonic]`.
+fn with_sensors(sensors: &Sensors) -> String {
+    if sensors.are_usual() {
+        return String::new();
+    }
+    format!("; range sensors {}", sensors.names().collect::<Vec<_>>().join(", "))
+}
+
+/// Endings of recordings in text.
+const TABLES: [&str; 6] = ["csv", "tsv", "txt", "tum", "gz", "log"];
+
+fn file(path: &Path, what: impl Fn(String) -> Contents) -> Result<Contents> {
     let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
     match ending.as_str() {
-        "json" => of_json(path),
-        "toml" => of_toml(path),
-        "csv" => {
+        "json" => of_json(path).map(what),
+        "toml" => of_toml(path).map(what),
+        "csv" if is_run(path) => {
             let run = Run::read(path, super::warn)?;
             let seen = run.rows.iter().filter(|row| row.pose.is_some()).count();
             let heard = run.rows.iter().filter(|row| row.echo_cm.is_some()).count();
-            Ok(format!("a run of {} rows, {seen} with a pose and {heard} with a reading", run.rows.len()))
+            Ok(what(format!("a run of {} rows, {seen} with a pose and {heard} with a reading", run.rows.len())))
         }
+        ending if TABLES.contains(&ending) => Contents::of_table(path),
         _ => {
             // The file must exist.
             fs::metadata(path).map_err(|e| Error::in_file(path, format!("cannot be read: {e}")))?;
             let product = PRODUCTS.iter().find(|(other, _)| *other == ending);
-            let (_, what) = product.ok_or_else(|| Error::in_file(path, "unrecognised file type"))?;
-            Ok((*what).into())
+            let (_, product) = product.ok_or_else(|| Error::in_file(path, "unrecognised file type"))?;
+            Ok(what((*product).into()))
         }
     }
+}
+
+/// Returns whether a table is a run of a log folder, by its header.
+fn is_run(path: &Path) -> bool {
+    let text = files::read_text(path).unwrap_or_default();
+    let header = text.lines().next().unwrap_or_default();
+    let has = |name: &str| header.split(',').any(|column| column.trim() == name);
+    ["t_ms", "left", "right", "x_cm", "y_cm", "heading_deg"].into_iter().all(has)
 }
 
 fn of_json(path: &Path) -> Result<String> {
@@ -140,6 +198,9 @@ fn describe(simulator: &Simulator) -> String {
         "a simulator, trained ({}) on {} runs with seed {} by mindgap {}; {} ms per step",
         origin.trainer, origin.runs, origin.seed, origin.version, simulator.robot.step_ms
     );
+    if simulator.sensor.is_some() || !simulator.further.is_empty() {
+        text += &format!("; range sensors {}", simulator.sensor_names().join(", "));
+    }
     for missing in &simulator.missing {
         text += &format!("; no network {}: {}", missing.network, missing.reason);
     }
@@ -147,7 +208,8 @@ fn describe(simulator: &Simulator) -> String {
         text += &format!("; behind a filter of the drive: {}", simulator.filter.in_words(&simulator.robot));
     }
     if !simulator.added.is_empty() {
-        let ids: Vec<&str> = simulator.added.iter().map(|effect| effect.effect.as_str()).collect();
+        let ids: Vec<String> =
+            simulator.added.iter().map(|effect| of_sensor(&effect.effect, effect.sensor.as_deref())).collect();
         text += &format!("; with the effects {}", ids.join(", "));
     }
     text
@@ -161,7 +223,7 @@ fn of_toml(path: &Path) -> Result<String> {
     let table: BTreeMap<String, IgnoredAny> = files::read_toml(path)?;
     let has = |key: &str| table.contains_key(key);
     if has("tuple") {
-        let ControllerFile { controller, origin } = ControllerFile::read(path)?;
+        let ControllerFile { controller, origin, sensors } = ControllerFile::read(path)?;
         let evolved = origin.map(|o| {
             format!(
                 "; evolved in {} for start {} of {}, {:.0} % reach the target",
@@ -172,15 +234,19 @@ fn of_toml(path: &Path) -> Result<String> {
             )
         });
         let steps = format!("a controller, {} ms per step, at most {} steps", controller.step_ms, controller.max_steps);
-        return Ok(steps + &evolved.unwrap_or_default());
+        let mut named: Vec<&str> = sensors.iter().flatten().map(String::as_str).collect();
+        named.dedup();
+        let asks = if named.is_empty() { String::new() } else { format!("; asks range sensor {}", named.join(", ")) };
+        return Ok(steps + &asks + &evolved.unwrap_or_default());
     }
     if has("effect") {
         let ids: Vec<&str> = own::read(path)?.iter().map(|effect| effect.id).collect();
         return Ok(format!("user-defined effects for `mindgap diagnose --effects`: {}", ids.join(", ")));
     }
     if has("ultrasonic") || has("track_cm") {
-        let robot = Robot::read(path)?;
-        return Ok(format!("a robot with a track of {} cm, {} ms per step", robot.track_cm, robot.step_ms));
+        let (robot, sensors) = Robot::read_all(path)?;
+        let text = format!("a robot with a track of {} cm, {} ms per step", robot.track_cm, robot.step_ms);
+        return Ok(text + &with_sensors(&sensors));
     }
     let scene = Scene::read(path)?;
     let target = if scene.target_cm.is_some() { "a target" } else { "no target" };

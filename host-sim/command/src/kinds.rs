@@ -22,6 +22,9 @@ pub const PROGRAM: Kind = Kind { name: "a program", is_own: is_program };
 /// The thresholds of the diagnosis.
 pub const CALIBRATION: Kind =
     Kind { name: "a calibration", is_own: |content| content.starts_with(b"# Made by: mindgap challenge calibrate") };
+/// The form errors of intervals.
+pub const FORM_ERRORS: Kind =
+    Kind { name: "form errors", is_own: |content| content.starts_with(b"# Made by: mindgap challenge score") };
 /// A page for a browser.
 pub const PAGE: Kind =
     Kind { name: "a page", is_own: |content| text(content).contains(r#"<meta name="generator" content="mindgap">"#) };
@@ -36,11 +39,12 @@ pub const CHECKPOINT: Kind =
 pub const UNSIGNED: Kind = Kind { name: "anything", is_own: |_| false };
 
 /// Phrases in the first lines of programs written by `export`, in all formats but the brick's executable.
-const PROGRAMS: [&str; 5] = [
+const PROGRAMS: [&str; 6] = [
     "A six-tuple controller",
     "A simulator's networks in fixed point",
     "A simulator's networks in floating point",
     "commands for the LEGO NXT with standard firmware",
+    "commands for a hub with Pybricks firmware",
     "use mindgap_core::fixed_network",
 ];
 /// First bytes of a brick's executable.
@@ -63,6 +67,7 @@ pub const REPORTS: &[(&[&str], &str)] = &[
     (&["recordings"], "an import of recordings: `mindgap import --json`"),
     (&["events"], "a run of an onboard program: `mindgap brick --json`"),
     (&["lessons"], "an adaptation to runs: `mindgap adapt --json`"),
+    (&["threshold_nats"], "a replay through the monitor: `mindgap monitor --json`"),
     (&["trials"], "a loop on the robot: `mindgap loop`"),
     (&["false_alarms"], "a score: `mindgap challenge score --json`"),
     (&["networks", "starts"], "a demonstration: `mindgap demo --json`"),
@@ -73,7 +78,7 @@ pub const REPORTS: &[(&[&str], &str)] = &[
     (&["controller", "generations"], "an evolution: `mindgap evolve --json`"),
     (&["program", "bytes"], "an export: `mindgap export --json`"),
     (&["run", "ending"], "a drive: `mindgap drive --json`"),
-    (&["path", "what"], "the type of a file: `mindgap info --json`"),
+    (&["schema", "files"], "the contents of files: `mindgap info --json`"),
 ];
 
 fn is_report(content: &[u8]) -> bool {

@@ -5,20 +5,20 @@
 
 mod adapt;
 mod brick;
-mod budget_text;
 mod challenge;
 mod check;
 mod checkpoint_args;
 mod choices;
 mod closed_loop;
+mod compare;
 mod crosscheck;
 pub mod defaults;
 mod demo;
 mod diagnose;
-mod diagnosis_text;
 mod drive;
 mod evaluate;
 mod evolve;
+mod experiments;
 mod explain;
 mod export;
 mod fleet;
@@ -31,11 +31,14 @@ mod json_output;
 pub mod kinds;
 mod logging;
 mod manual;
+mod monitor;
 mod new;
+mod patch_args;
 mod ports;
 mod progress;
 mod record;
 mod schema;
+mod serve;
 #[cfg(unix)]
 mod signals;
 mod simulate;
@@ -56,8 +59,9 @@ use mindgap_files as files;
 use mindgap_files::places::Places;
 use mindgap_foundations::error::{Error, Result};
 use mindgap_foundations::executor::Executor;
-use mindgap_import::draft::to_fill_in;
+use mindgap_import::draft;
 use mindgap_logs::Logs;
+use mindgap_logs::heard::Heard;
 use mindgap_logs::inspection::Inspection;
 use mindgap_logs::robot::same_robot;
 use mindgap_models::simulator::Simulator;
@@ -79,6 +83,7 @@ enum Command {
     Brick(brick::Brick),
     Challenge(challenge::Challenge),
     Check(check::Check),
+    Compare(compare::Compare),
     Crosscheck(crosscheck::Crosscheck),
     Demo(demo::Demo),
     Diagnose(diagnose::Diagnose),
@@ -92,12 +97,17 @@ enum Command {
     Export(export::Export),
     Import(import::Import),
     Loop(closed_loop::Loop),
+    Monitor(monitor::Monitor),
     New(new::New),
     Info(info::Info),
     Completions(manual::Completions),
     Manual(manual::Manual),
     Schema(schema::Schema),
+    Serve(serve::Serve),
 }
+
+/// Exit code of `--exit-code` for a gap.
+const GAP: u8 = 3;
 
 /// A subcommand.
 trait Run {
@@ -109,6 +119,11 @@ trait Run {
     /// # Errors
     /// If the work cannot be done; the error is one line for the user.
     fn run(&self, executor: &dyn Executor) -> Result<String>;
+
+    /// Returns the exit code after a successful run.
+    fn exit_code(&self) -> u8 {
+        0
+    }
 
     /// Returns the checkpoint from which an interrupted run resumes, or `None` for quick subcommands.
     fn checkpoint(&self) -> Option<Checkpoint> {
@@ -128,6 +143,7 @@ impl Command {
             Command::Brick(command) => command,
             Command::Challenge(command) => command,
             Command::Check(command) => command,
+            Command::Compare(command) => command,
             Command::Crosscheck(command) => command,
             Command::Demo(command) => command,
             Command::Diagnose(command) => command,
@@ -141,21 +157,25 @@ impl Command {
             Command::Export(command) => command,
             Command::Import(command) => command,
             Command::Loop(command) => command,
+            Command::Monitor(command) => command,
             Command::New(command) => command,
             Command::Info(command) => command,
             Command::Completions(command) => command,
             Command::Manual(command) => command,
             Command::Schema(command) => command,
+            Command::Serve(command) => command,
         }
     }
 }
 
-/// Runs the command line of this process. Exits with 0 on success, 1 on failure and 2 on a usage error.
+/// Runs the command line of this process. Exits with 0 on success (or with what `--exit-code` asks for), 1 on failure and 2 on
+/// a usage error.
 pub fn run() -> ExitCode {
     let complain = |error: &Error| logging::error(&error.to_string());
+    let mut code = 0;
     let is_done = match Workers::join() {
         Ok(mut workers) => {
-            let done = answer(&mut workers);
+            let done = answer(&mut workers).map(|answered| code = answered);
             workers.end(done, complain)
         }
         Err(error) => {
@@ -163,11 +183,11 @@ pub fn run() -> ExitCode {
             false
         }
     };
-    if is_done { ExitCode::SUCCESS } else { ExitCode::FAILURE }
+    if is_done { ExitCode::from(code) } else { ExitCode::FAILURE }
 }
 
-/// Parses the arguments and the defaults of `mindgap.toml`, runs the subcommand and prints its report.
-fn answer(workers: &mut Workers) -> Result<()> {
+/// Parses the arguments and the defaults of `mindgap.toml`, runs the subcommand, prints its report and returns its exit code.
+fn answer(workers: &mut Workers) -> Result<u8> {
     #[cfg(unix)]
     signals::install().map_err(|e| Error::new(format!("cannot install signal handlers: {e}")))?;
     let definition = guide::command();
@@ -178,12 +198,13 @@ fn answer(workers: &mut Workers) -> Result<()> {
     defaults.log();
     let subcommand = command.as_run();
     let (places, checkpoint) = (subcommand.places(), subcommand.checkpoint());
+    defaults.check(&places, &general.allow)?;
     if workers.is_first() {
         places.check(general.force, checkpoint.as_ref().is_some_and(Checkpoint::exists))?;
     } else if subcommand.is_shared() {
         files::disable_writing();
     } else {
-        return Ok(());
+        return Ok(0);
     }
     checkpoint_args::begin(workers, subcommand.is_shared(), checkpoint, &places, (&definition, &matches))?;
     progress::begin(matches.subcommand_name().unwrap_or_default().to_owned());
@@ -191,7 +212,10 @@ fn answer(workers: &mut Workers) -> Result<()> {
     progress::end();
     let text = done?;
     // A file written to standard output is the only thing written there.
-    if general.quiet || places.use_standard_output() { Ok(()) } else { print(&text) }
+    if !general.quiet && !places.use_standard_output() {
+        print(&text)?;
+    }
+    Ok(subcommand.exit_code())
 }
 
 /// Prints to standard output.
@@ -207,12 +231,7 @@ fn read_logs(folder: &Path) -> Result<Logs> {
     let logs = Logs::read(folder, warn)?;
     let (runs, rows, step_ms) = (logs.runs.len(), logs.rows(), logs.robot.step_ms);
     log::info!("{}: {runs} runs, {rows} rows, {step_ms} ms apart", folder.display());
-    let robot = folder.join("robot.toml");
-    let open = to_fill_in(&robot.display().to_string(), &files::read_text(&robot)?);
-    if let Some(first) = open.first() {
-        let others = if open.len() > 1 { format!(" and {} more", open.len() - 1) } else { String::new() };
-        warn(format!("{first}{others}: still marked FILL IN: an error in it will show up as a gap"));
-    }
+    draft::warning(folder)?.into_iter().for_each(warn);
     Ok(logs)
 }
 
@@ -224,6 +243,15 @@ fn read_logs(folder: &Path) -> Result<Logs> {
 fn read_sound_logs(folder: &Path) -> Result<Logs> {
     let report = |found| warn(format!("{}: {found}", folder.display()));
     Inspection::new(read_logs(folder)?).into_usable(report).map_err(|error| error.or_in_file(folder))
+}
+
+/// Reads logs as [`read_sound_logs`] does, as each range sensor heard them, the first sensor first.
+///
+/// # Errors
+/// As [`read_sound_logs`].
+fn read_sound_logs_by_sensor(folder: &Path) -> Result<Vec<Heard>> {
+    let report = |found| warn(format!("{}: {found}", folder.display()));
+    read_logs(folder)?.usable_by_sensor(report).map_err(|error| error.or_in_file(folder))
 }
 
 /// Reads logs as [`read_sound_logs`] does, and checks that they are of the simulator's robot.

@@ -64,7 +64,7 @@ fn readme(folder: &Path) -> String {
         "# A robot\n\n\
          - `robot.toml`: dimensions of the robot. Values marked FILL IN are not known yet.\n\
          - `scene.toml`: the walls where it drove; empty means open ground.\n\
-         - `{RECORDINGS}`: its recordings, unchanged: CSV files with commands and poses, or ROS 2 bags (MCAP).\n\n\
+         - `{RECORDINGS}`: its recordings, unchanged: CSV files with commands and poses, or bags of ROS.\n\n\
          Drive all kinds of commands, slow and fast, straight and in turns, and change them every few steps. In every third \
          run, hold each command for ten steps or more: controllers do so, and errors of a fraction of a degree per step \
          add up there.\n\n\

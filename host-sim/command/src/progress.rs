@@ -71,9 +71,13 @@ pub fn suspended(write: impl FnOnce()) {
 
 /// Moves a bar over the networks, which are trained in sequence.
 pub fn training(bar: &ProgressBar, Progress { network, evaluations }: Progress) {
-    let place = NETWORKS.iter().position(|name| *name == network);
-    bar.set_position(place.unwrap_or_default() as u64);
-    bar.set_message(training_words(network, evaluations));
+    match NETWORKS.iter().position(|name| *name == network) {
+        Some(place) => bar.set_position(place as u64),
+        // The networks of further range sensors come last.
+        None if evaluations == 0 => bar.set_position((bar.position() + 1).max(NETWORKS.len() as u64)),
+        None => {}
+    }
+    bar.set_message(training_words(&network, evaluations));
 }
 
 /// Returns a description of the current state of training.

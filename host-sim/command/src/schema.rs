@@ -9,11 +9,10 @@ use schemars::transform::RecursiveTransform;
 use schemars::{JsonSchema, SchemaGenerator};
 use serde_json::Value;
 
-use super::{Run, adapt, brick, demo, drive, evolve, export, import, info, record, train};
+use super::{Run, adapt, brick, compare, demo, diagnose, drive, evolve, export, import, info, record, train};
 use mindgap_applications::challenge::score::Score;
 use mindgap_applications::closed_loop::state::State;
 use mindgap_applications::fleet::Fleet;
-use mindgap_diagnosis::diagnosis::Diagnosis;
 use mindgap_diagnosis::survey::Survey;
 use mindgap_files as files;
 use mindgap_files::places::Places;
@@ -22,6 +21,7 @@ use mindgap_foundations::executor::Executor;
 use mindgap_learning::crosscheck::Crosscheck;
 use mindgap_learning::evaluation::accuracy::Evaluation;
 use mindgap_models::simulator::Simulator;
+use mindgap_models::simulator::monitor::findings::Findings;
 use mindgap_models::simulator::rollout_report::RolloutReport;
 
 /// Print the JSON Schema of an output, or write those of all outputs.
@@ -43,9 +43,10 @@ const OUTPUTS: &[(&str, Generate)] = &[
     ("brick", of::<brick::results::BrickResults>),
     ("challenge-score", of::<Score>),
     ("check", of::<Survey>),
+    ("compare", of::<compare::CompareResults>),
     ("crosscheck", of::<Crosscheck>),
     ("demo", of::<demo::DemoResults>),
-    ("diagnose", of::<Diagnosis>),
+    ("diagnose", of::<diagnose::DiagnoseResults>),
     ("drive", of::<drive::DriveResults>),
     ("evaluate", of::<Evaluation>),
     ("evolve", of::<evolve::EvolveResults>),
@@ -55,6 +56,7 @@ const OUTPUTS: &[(&str, Generate)] = &[
     ("import-recordings", of::<import::recordings::RecordingsResults>),
     ("info", of::<info::InfoResults>),
     ("loop", of::<State>),
+    ("monitor", of::<Findings>),
     ("record", of::<record::RecordResults>),
     ("simulate", of::<RolloutReport>),
     ("simulator", of::<Simulator>),

@@ -17,9 +17,9 @@ use mindgap_foundations::executor::Executor;
 use mindgap_learning::evolve::trial::Trial;
 use mindgap_logs::controller_file::ControllerFile;
 use mindgap_logs::{Scene, Termination};
-use mindgap_models::simulator::Noise;
 use mindgap_models::simulator::environment::SensorModel;
 use mindgap_models::simulator::rollout_report::RolloutReport;
+use mindgap_models::simulator::{Noise, Simulator};
 use mindgap_pages::simulation::{Subject, page};
 
 /// Run a controller in a simulator; each run samples a robot from the posterior.
@@ -58,6 +58,15 @@ pub struct Simulate {
     figures: Option<PathBuf>,
 }
 
+/// Returns the simulator of the robot with the range sensor that a controller asks.
+///
+/// # Errors
+/// When its tuples ask several, or one that the robot does not have.
+pub fn asking(simulator: Simulator, controller: &ControllerFile) -> Result<Simulator> {
+    let asked = controller.sensor(simulator.first_sensor())?;
+    if asked == simulator.first_sensor() { Ok(simulator) } else { simulator.asking(asked) }
+}
+
 /// Maximum number of rows of the table.
 const ROWS: usize = 20;
 
@@ -70,7 +79,9 @@ impl Run for Simulate {
 
     fn run(&self, _: &dyn Executor) -> Result<String> {
         let simulator = textbook::simulator(&self.sim)?;
-        let controller = ControllerFile::read_for(&self.controller, &simulator.robot)?.controller;
+        let file = ControllerFile::read_for(&self.controller, &simulator.robot)?;
+        let simulator = asking(simulator, &file).map_err(|error| error.or_in_file(&self.controller))?;
+        let controller = file.controller;
         let scene = Scene::read(&self.scene)?;
         let start = start_of(&scene, self.start, &simulator.robot, &self.scene)?;
         let trial = Trial {

@@ -1,5 +1,7 @@
 //! Plain tables for the terminal.
 
+pub use mindgap_pages::words::count;
+
 /// Returns a table with a header, the first column aligned left and all others right.
 pub fn text<const N: usize>(header: [&str; N], rows: &[[String; N]]) -> String {
     let widths: [usize; N] = std::array::from_fn(|i| {
@@ -21,9 +23,4 @@ pub fn text<const N: usize>(header: [&str; N], rows: &[[String; N]]) -> String {
 /// Returns a number with `decimals` decimals, or a dash for `None`.
 pub fn number(value: Option<f64>, decimals: usize) -> String {
     value.map_or("-".into(), |v| format!("{v:.decimals$}"))
-}
-
-/// Returns a number with its noun: "1 run", "2 runs".
-pub fn count(of: usize, what: &str) -> String {
-    format!("{of} {what}{}", if of == 1 { "" } else { "s" })
 }

@@ -1,14 +1,26 @@
 //! `kinematic`, the name of the textbook model in place of a simulator file.
 
 use std::ffi::OsStr;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use mindgap_files as files;
 use mindgap_foundations::error::{Error, Result};
+use mindgap_logs::recording_to_import;
 use mindgap_models::simulator::Simulator;
 
 /// Argument that selects the textbook model.
 pub const KINEMATIC: &str = "kinematic";
+
+/// Parses the argument that names a simulator file or the textbook model: a recording must be imported first.
+///
+/// # Errors
+/// If it is named like a recording; the message has the command that imports it.
+pub fn not_a_recording(argument: &str) -> std::result::Result<PathBuf, String> {
+    match recording_to_import(Path::new(argument)) {
+        Some(import) => Err(format!("it is a recording: {import}, then give the logs after {KINEMATIC}")),
+        None => Ok(argument.into()),
+    }
+}
 
 /// Reads a simulator file where `kinematic` would be accepted too.
 ///

@@ -54,6 +54,9 @@ fn hidden_layer(text: &str) -> Result<(String, Shape), String> {
     Ok((network.into(), shape.ok_or("N must be even, from 2 to 64")?))
 }
 
+/// Number of networks of a further range sensor.
+const OF_A_SENSOR: usize = 2;
+
 /// The trainers.
 #[derive(Clone, Copy, ValueEnum)]
 enum Trainer {
@@ -75,7 +78,7 @@ pub struct TrainResults<'a> {
     /// Random seed.
     seed: u64,
     /// Number of times that each network was evaluated over all samples.
-    evaluations: BTreeMap<&'static str, usize>,
+    evaluations: BTreeMap<String, usize>,
     /// Networks that the logs could not support.
     missing: &'a [Missing],
 }
@@ -87,12 +90,12 @@ impl Run for Train {
     }
 
     fn run(&self, executor: &dyn Executor) -> error::Result<String> {
-        let logs = super::read_sound_logs(&self.logs)?;
-        let bar = progress::bar(NETWORKS.len() as u64);
+        let heard = super::read_sound_logs_by_sensor(&self.logs)?;
+        let bar = progress::bar((NETWORKS.len() + OF_A_SENSOR * (heard.len() - 1)) as u64);
         // The latest count of each network.
         let evaluations = RefCell::new(BTreeMap::new());
         let watch = |p: train::Progress| {
-            evaluations.borrow_mut().insert(p.network, p.evaluations);
+            evaluations.borrow_mut().insert(p.network.clone(), p.evaluations);
             progress::training(&bar, p);
         };
         let trainer = match self.trainer {
@@ -103,14 +106,13 @@ impl Run for Train {
         for (network, shape) in &self.hidden {
             shapes.of(network).into_iter().for_each(|layer| *layer = *shape);
         }
-        let mut simulator = train::train(executor, &logs, &trainer, &shapes, self.seed, &watch)?;
+        let mut simulator = train::train_sensors(executor, &heard, &trainer, &shapes, self.seed, &watch)?;
         if shapes != TABLE_ONE {
-            simulator.table_one = Some(train::train(executor, &logs, &trainer, &TABLE_ONE, self.seed, &watch)?.into());
+            let table_one = train::train_sensors(executor, &heard, &trainer, &TABLE_ONE, self.seed, &watch)?;
+            simulator.table_one = Some(table_one.into());
         }
         bar.finish_and_clear();
-        for missing in &simulator.missing {
-            warn(format!("no {} network: {}", missing.network, missing.reason));
-        }
+        simulator.missing.iter().for_each(|missing| warn(missing.to_string()));
         simulator.write(&self.out)?;
         let evaluations = evaluations.take();
         let counts: Vec<String> = evaluations.iter().map(|(name, n)| format!("{name} {n}")).collect();

@@ -3,11 +3,12 @@
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::budget::{Part, budget};
+use super::budget::{Budget, budget};
 use super::channel::Channel;
 use super::confirm::Confirmed;
 use super::fit::FitContext;
 use super::ledger::Ledger;
+use super::outliers::Outliers;
 use super::sample::RowSet;
 use mindgap_foundations::statistics::{bootstrap, rounding};
 use mindgap_learning::evaluation::paths::PathError;
@@ -18,7 +19,7 @@ pub struct Account {
     /// Its reduction, or `None` if these rows show no reducible gap.
     pub reduction: Option<GapReduction>,
     /// Its parts.
-    pub budget: Vec<Part>,
+    pub budget: Budget,
     /// The reducible gap per block, in nats.
     pub reducible: Vec<f64>,
 }
@@ -48,22 +49,25 @@ pub struct Reduction {
     /// The gap with the effects, nats per step.
     #[serde(serialize_with = "rounding::number")]
     pub after: f64,
-    /// The fraction of the reducible gap that is closed.
-    #[serde(serialize_with = "rounding::number")]
-    pub reducible_closed: f64,
-    /// 95 % interval of that fraction, by bootstrap over blocks.
-    #[serde(serialize_with = "rounding::interval")]
-    pub ci95: [f64; 2],
+    /// The fraction of the reducible gap that is closed; null without effects.
+    #[serde(serialize_with = "rounding::optional")]
+    pub reducible_closed: Option<f64>,
+    /// 95 % interval of that fraction, by bootstrap over blocks; null without effects.
+    #[serde(serialize_with = "rounding::optional_interval")]
+    pub ci95: Option<[f64; 2]>,
 }
 
 /// Reduction of the gap in a channel.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct ChannelReduction {
     /// The channel.
     pub channel: Channel,
     /// The reduction.
     #[serde(flatten)]
     pub reduction: Reduction,
+    /// The range sensor concerned, where there are several.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sensor: Option<String>,
 }
 
 /// The second best explanation.
@@ -103,7 +107,7 @@ fn reduction(found: &Confirmed, ledger: &Ledger, context: &FitContext, rows: Row
     let channel = |channel: Channel| {
         let tally = tally(&[channel]);
         let is_plain = tally.reducible() >= context.calibration.judgement.strong_nats;
-        Some(ChannelReduction { channel, reduction: tally.reduction(steps, seed).filter(|_| is_plain)? })
+        Some(ChannelReduction { channel, reduction: tally.reduction(steps, seed).filter(|_| is_plain)?, sensor: None })
     };
     let runner_up = found.runner_up().map(|fit| {
         let gained = ledger.gained_by(fit, found, rows.sample());
@@ -114,6 +118,25 @@ fn reduction(found: &Confirmed, ledger: &Ledger, context: &FitContext, rows: Row
     Some(GapReduction { whole, floor: 0.0, runner_up, channels, paths })
 }
 
+impl GapReduction {
+    /// No gap that could be reduced.
+    pub const NONE: GapReduction = GapReduction {
+        whole: Reduction { before: 0.0, after: 0.0, reducible_closed: None, ci95: None },
+        floor: 0.0,
+        runner_up: None,
+        channels: Vec::new(),
+        paths: Vec::new(),
+    };
+
+    /// The gap of outliers alone, which no effect reduces; `None` without any.
+    pub fn of_outliers(outliers: &[Outliers], rows: usize) -> Option<Self> {
+        let nats: f64 = outliers.iter().map(|of| of.nats).sum();
+        let per_step = nats / rows.max(1) as f64;
+        let whole = Reduction { before: per_step, after: per_step, ..GapReduction::NONE.whole };
+        (!outliers.is_empty()).then_some(GapReduction { whole, ..GapReduction::NONE })
+    }
+}
+
 impl Tally {
     fn reducible(&self) -> f64 {
         self.gained.iter().sum::<f64>() + self.remaining.iter().sum::<f64>().max(0.0)
@@ -121,11 +144,12 @@ impl Tally {
 
     fn reduction(&self, steps: f64, seed: u64) -> Option<Reduction> {
         let (gained, reducible) = (self.gained.iter().sum::<f64>(), self.reducible());
+        let has_effects = self.gained.iter().any(|nats| *nats != 0.0);
         (reducible > 0.0).then(|| Reduction {
             before: reducible / steps,
             after: (reducible - gained) / steps,
-            reducible_closed: gained / reducible,
-            ci95: self.interval(seed),
+            reducible_closed: has_effects.then_some(gained / reducible),
+            ci95: has_effects.then(|| self.interval(seed)),
         })
     }
 
@@ -153,13 +177,19 @@ mod tests {
     #[test]
     fn closed_fraction_is_gain_over_reducible_gap() {
         let found = tally(&[6.0; 4], &[2.0; 4]).reduction(16.0, 1).expect("a gap");
-        assert_eq!(found, Reduction { before: 2.0, after: 0.5, reducible_closed: 0.75, ci95: [0.75; 2] });
+        assert_eq!(found, Reduction { before: 2.0, after: 0.5, reducible_closed: Some(0.75), ci95: Some([0.75; 2]) });
     }
 
     #[test]
     fn negative_remaining_gain_counts_as_zero() {
         let found = tally(&[6.0; 4], &[-2.0; 4]).reduction(24.0, 1).expect("a gap");
-        assert_eq!((found.before, found.after, found.reducible_closed), (1.0, 0.0, 1.0));
+        assert_eq!((found.before, found.after, found.reducible_closed), (1.0, 0.0, Some(1.0)));
+    }
+
+    #[test]
+    fn gap_without_effects_is_as_large_afterwards() {
+        let found = tally(&[0.0; 4], &[2.0; 4]).reduction(16.0, 1).expect("a gap");
+        assert_eq!(found, Reduction { before: 0.5, after: 0.5, reducible_closed: None, ci95: None });
     }
 
     #[test]
@@ -174,8 +204,8 @@ mod tests {
         let gained: Vec<f64> = (0..100).map(|block| 4.0 + 2.0 * alternating(block)).collect();
         let remaining: Vec<f64> = gained.iter().map(|g| 8.0 - g).collect();
         let found = tally(&gained, &remaining).reduction(100.0, 1).expect("a gap");
-        assert_eq!(found.reducible_closed, 0.5);
-        let [low, high] = found.ci95;
+        assert_eq!(found.reducible_closed, Some(0.5));
+        let [low, high] = found.ci95.expect("an interval");
         assert!((low - 0.451).abs() < 0.008 && (high - 0.549).abs() < 0.008, "{low} {high}");
     }
 
@@ -194,7 +224,11 @@ mod tests {
         let reduction = reduction(&found, &ledger, &context, rows).expect("a gap");
         let nats = log_density(0, 0.0, 1.0) - log_density(0, 0.9, 1.0);
         let Reduction { before, after, reducible_closed, .. } = reduction.whole;
-        assert!((before - nats).abs() < 1e-9 && after.abs() < 1e-9 && (reducible_closed - 1.0).abs() < 1e-9);
+        assert!(
+            (before - nats).abs() < 1e-9
+                && after.abs() < 1e-9
+                && reducible_closed.is_some_and(|closed| (closed - 1.0).abs() < 1e-9)
+        );
         let channels: Vec<Channel> = reduction.channels.iter().map(|c| c.channel).collect();
         assert_eq!((channels, reduction.runner_up), (vec![Channel::Forward], None));
     }

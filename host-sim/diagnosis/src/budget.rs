@@ -18,6 +18,18 @@ pub struct Part {
     /// 95 % interval of the share, by bootstrap over blocks.
     #[serde(serialize_with = "rounding::interval")]
     pub ci95: [f64; 2],
+    /// The range sensor concerned, where there are several.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sensor: Option<String>,
+}
+
+/// The parts of a gap and its size.
+#[derive(Clone, Debug, Default)]
+pub struct Budget {
+    /// The parts; none if there is nothing to divide.
+    pub parts: Vec<Part>,
+    /// Their sum, nats.
+    pub nats: f64,
 }
 
 /// The id of noise beyond the simulator's.
@@ -27,7 +39,7 @@ pub const UNEXPLAINED: &str = "unexplained";
 
 /// Divides a gap into the named effects in the order of the ledger, noise, and the unexplained part, which includes effects that
 /// are not named. Returns nothing if there is nothing to divide.
-pub fn budget(named: &[&'static str], ledger: &Ledger, seed: u64) -> Vec<Part> {
+pub fn budget(named: &[&'static str], ledger: &Ledger, seed: u64) -> Budget {
     let (mut parts, mut unexplained) = (Vec::new(), ledger.unexplained.by_block());
     for (id, scores) in &ledger.effects {
         let gained = scores.by_block();
@@ -46,15 +58,15 @@ pub fn budget(named: &[&'static str], ledger: &Ledger, seed: u64) -> Vec<Part> {
     }
     let total: f64 = whole.iter().sum();
     if total <= 0.0 {
-        return Vec::new();
+        return Budget::default();
     }
     let part = |(id, by_block): (&str, Vec<f64>)| {
         let others: Vec<f64> = whole.iter().zip(&by_block).map(|(w, p)| w - p).collect();
         let share = |own: f64, others: f64| (own + others > 0.0).then(|| (own / (own + others)).clamp(0.0, 1.0));
         let ci95 = bootstrap::interval(&by_block, &others, seed, share);
-        Part { id: id.into(), share: by_block.iter().sum::<f64>() / total, ci95 }
+        Part { id: id.into(), share: by_block.iter().sum::<f64>() / total, ci95, sensor: None }
     };
-    parts.into_iter().map(part).collect()
+    Budget { parts: parts.into_iter().map(part).collect(), nats: total }
 }
 
 /// Sets a part to zero that loses on the whole, as overlapping effects and models can that do not hold on other runs.
@@ -81,30 +93,33 @@ mod tests {
     #[test]
     fn shares_are_proportional_to_nats() {
         let ledger = ledger(&[("slope", [3.0; 4]), ("latency", [4.0; 4])], [1.0; 4], [2.0; 4]);
-        let both = budget(&["latency", "slope"], &ledger, 1);
+        let both = budget(&["latency", "slope"], &ledger, 1).parts;
         assert_eq!(shares(&both), [("slope", 0.3), ("latency", 0.4), (SCATTER, 0.1), (UNEXPLAINED, 0.2)]);
         // Every block has the same shares, and so has every resample of blocks.
         assert!(both.iter().all(|part| part.ci95.iter().all(|end| (end - part.share).abs() < 1e-12)));
-        assert_eq!(shares(&budget(&["slope"], &ledger, 1)), [("slope", 0.3), (SCATTER, 0.1), (UNEXPLAINED, 0.6)]);
-        assert_eq!(shares(&budget(&[], &ledger, 1)), [(SCATTER, 0.1), (UNEXPLAINED, 0.9)]);
+        assert_eq!(shares(&budget(&["slope"], &ledger, 1).parts), [("slope", 0.3), (SCATTER, 0.1), (UNEXPLAINED, 0.6)]);
+        assert_eq!(shares(&budget(&[], &ledger, 1).parts), [(SCATTER, 0.1), (UNEXPLAINED, 0.9)]);
     }
 
     #[test]
     fn part_that_loses_has_no_share() {
         let ledger = ledger(&[("slope", [3.0; 4])], [1.0; 4], [-2.0; 4]);
-        assert_eq!(shares(&budget(&["slope"], &ledger, 1)), [("slope", 0.75), (SCATTER, 0.25), (UNEXPLAINED, 0.0)]);
+        assert_eq!(
+            shares(&budget(&["slope"], &ledger, 1).parts),
+            [("slope", 0.75), (SCATTER, 0.25), (UNEXPLAINED, 0.0)]
+        );
     }
 
     #[test]
     fn empty_gap_has_no_parts() {
-        assert_eq!(budget(&[], &ledger(&[], [0.0; 4], [-1.0; 4]), 1), []);
+        assert_eq!(budget(&[], &ledger(&[], [0.0; 4], [-1.0; 4]), 1).parts, []);
     }
 
     /// Half of the blocks show only an effect and half only noise: resamples range from none to all.
     #[test]
     fn interval_is_that_of_resampled_blocks() {
         let ledger = ledger(&[("slope", [2.0, 0.0, 2.0, 0.0])], [0.0, 2.0, 0.0, 2.0], [0.0; 4]);
-        let [low, high] = budget(&["slope"], &ledger, 1)[0].ci95;
+        let [low, high] = budget(&["slope"], &ledger, 1).parts[0].ci95;
         assert_eq!([low, high], [0.0, 1.0]);
     }
 }

@@ -1,8 +1,13 @@
 //! Confirmation: what holds on rows that nothing was fitted to.
 
+pub mod unconfirmed;
+
+use unconfirmed::{Evidence, Unconfirmed};
+
 use super::calibration::Calibration;
 use super::explanation::Explanation;
 use super::fit::{FitContext, Fitted};
+use super::outliers::{Outliers, outliers};
 use super::remainder::{Remainder, remainders};
 use super::sample::{HoldOut, Sample};
 use super::search::{Fits, Search};
@@ -19,12 +24,16 @@ pub struct Confirmed {
     pub chosen: Fitted,
     /// The slot of each of them.
     pub slots: Vec<Slot>,
+    /// The effects that were found and that held-out rows do not confirm.
+    pub unconfirmed: Vec<Unconfirmed>,
     /// The structured residual without any effect, by channel.
     pub beyond_null: Vec<Remainder>,
     /// The structured residual that the confirmed effects leave, by channel.
     pub beyond_chosen: Vec<Remainder>,
     /// The motion channels whose noise exceeds the simulator's.
     pub wider_noise: Vec<WiderNoise>,
+    /// The rows that lie farther off than the noise model expects, by channel.
+    pub outliers: Vec<Outliers>,
     /// Open-loop paths without and with the effects, on held-out rows if there are any.
     pub paths: Vec<Paths>,
 }
@@ -32,8 +41,11 @@ pub struct Confirmed {
 impl Search {
     /// Drops effects and structured residuals that gain nothing on held-out rows.
     pub fn confirm(mut self, context: &FitContext, hold_out: Option<&HoldOut>) -> Confirmed {
+        let mut unconfirmed = Vec::new();
         if let Some(rows) = hold_out {
-            let chosen = confirmed_on_hold_out(&self.chosen, &self.fits.null, context, rows);
+            let weighed = weigh(&self.chosen, &self.fits.null, context, rows);
+            let chosen = weighed.chosen;
+            unconfirmed = weighed.unconfirmed;
             if chosen.ids() != self.chosen.ids() {
                 self = self.choosing(chosen, context);
             }
@@ -41,7 +53,7 @@ impl Search {
                 remainder.confirm(context, rows);
             }
         }
-        let Search { fits, chosen, slots, beyond_null, beyond_chosen } = self;
+        let Search { fits, chosen, slots, beyond_null, beyond_chosen, .. } = self;
         let wider_noise = wider_noise(&beyond_chosen, context, hold_out);
         let sample: &Sample = match hold_out {
             Some(rows) => rows,
@@ -49,7 +61,8 @@ impl Search {
         };
         let paths = paths(&fits.null, &chosen, context, sample);
         log::info!("confirmed: {}", if chosen.ids().is_empty() { "no effect".into() } else { chosen.name() });
-        Confirmed { fits, chosen, slots, beyond_null, beyond_chosen, wider_noise, paths }
+        let outliers = outliers(&chosen, context, hold_out);
+        Confirmed { fits, chosen, slots, unconfirmed, beyond_null, beyond_chosen, wider_noise, outliers, paths }
     }
 }
 
@@ -67,9 +80,11 @@ impl Confirmed {
             fits: Fits { null, singles: Vec::new() },
             chosen,
             slots: Vec::new(),
+            unconfirmed: Vec::new(),
             beyond_null: Vec::new(),
             beyond_chosen: Vec::new(),
             wider_noise: Vec::new(),
+            outliers: Vec::new(),
             paths: Vec::new(),
         }
     }
@@ -118,39 +133,72 @@ fn paths(null: &Fitted, chosen: &Fitted, context: &FitContext, rows: &Sample) ->
     Rollouts { drive, before: &before, after: &after, noise: chosen.noise }.paths(rows, context.seed)
 }
 
-/// Returns those of the effects that gain on held-out rows, all together and each next to the others.
-pub(super) fn confirmed_on_hold_out(chosen: &Fitted, null: &Fitted, context: &FitContext, rows: &HoldOut) -> Fitted {
+/// What held-out rows leave of effects.
+pub(super) struct Weighed {
+    /// The effects that are confirmed.
+    pub chosen: Fitted,
+    /// The others, where all rows together still speak for them.
+    pub unconfirmed: Vec<Unconfirmed>,
+}
+
+/// Weighs effects on held-out rows, each next to the others and all together. Where these rows do not excite the effects enough
+/// to confirm or refute them, what was found by cross-validation stands.
+pub(super) fn weigh(chosen: &Fitted, null: &Fitted, context: &FitContext, rows: &HoldOut) -> Weighed {
+    let mut unconfirmed = Vec::new();
     if chosen.ids().is_empty() {
-        return null.clone();
+        return Weighed { chosen: null.clone(), unconfirmed };
     }
-    let nats = |fit: &Fitted| fit.predict(rows).total();
-    let chosen = drop_unconfirmed(chosen.clone(), &nats, context);
-    let gained = nats(&chosen) - nats(null);
+    let chosen = drop_unconfirmed(chosen.clone(), context, rows, &mut unconfirmed);
+    let gained = chosen.held_out_gain_over(null, rows);
     log::info!("{} gain {gained:.1} nats on held-out runs", chosen.name());
-    if gained < context.calibration.judgement.strong_nats { null.clone() } else { chosen }
+    let evidence = Evidence { with: &chosen, without: null, hold_out: rows };
+    if gained >= context.calibration.judgement.strong_nats || !evidence.can_confirm(context) {
+        return Weighed { chosen, unconfirmed };
+    }
+    if evidence.stands_over_all(context) {
+        let found_nats = chosen.gain_over(null).nats;
+        let entry = |id| Unconfirmed { id, found_nats, confirmed_nats: gained, sensor: None };
+        unconfirmed.extend(chosen.ids().into_iter().map(entry));
+    }
+    Weighed { chosen: null.clone(), unconfirmed }
 }
 
 /// Drops effects that gain nothing next to the others on held-out rows. Any gain suffices: few rows are held out, and each effect
 /// had strong evidence on the rows where it was found. Two effects that can stand for each other both gain nothing, and few
 /// held-out rows do not show which of them it is: the one is dropped first whose removal leaves the highest likelihood over all
 /// rows.
-fn drop_unconfirmed(chosen: Fitted, nats: &impl Fn(&Fitted) -> f64, context: &FitContext) -> Fitted {
+fn drop_unconfirmed(
+    chosen: Fitted,
+    context: &FitContext,
+    rows: &HoldOut,
+    unconfirmed: &mut Vec<Unconfirmed>,
+) -> Fitted {
     if chosen.ids().len() < 2 {
         return chosen;
     }
+    let nats = |fit: &Fitted| fit.predict(rows).total();
     let all = nats(&chosen);
     let without = |effect| {
         let fit = chosen.without(effect, context);
         let fewer = nats(&fit);
         log::info!("{} gains {:.1} nats next to the others on held-out runs", chosen.ids()[effect], all - fewer);
-        (fewer, fit)
+        (effect, fewer, fit)
     };
-    let unconfirmed = (0..chosen.ids().len()).map(without).filter(|(fewer, _)| *fewer >= all);
-    let on_all_rows = |(fewer, fit): &(f64, Fitted)| fewer + fit.log_evidence();
-    match unconfirmed.max_by(|a, b| on_all_rows(a).total_cmp(&on_all_rows(b))) {
-        Some((_, fewer)) => {
+    let refuted = (0..chosen.ids().len()).map(without).filter(|(_, fewer, _)| *fewer >= all);
+    let on_all_rows = |(_, fewer, fit): &(usize, f64, Fitted)| fewer + fit.log_evidence();
+    match refuted.max_by(|a, b| on_all_rows(a).total_cmp(&on_all_rows(b))) {
+        Some((effect, nats, fewer)) => {
             log::info!("of {} only {} gain on held-out runs", chosen.name(), fewer.name());
-            drop_unconfirmed(fewer, nats, context)
+            if (Evidence { with: &chosen, without: &fewer, hold_out: rows }).stands_over_all(context) {
+                let found_nats = chosen.gain_over(&fewer).nats;
+                unconfirmed.push(Unconfirmed {
+                    id: chosen.ids()[effect],
+                    found_nats,
+                    confirmed_nats: all - nats,
+                    sensor: None,
+                });
+            }
+            drop_unconfirmed(fewer, context, rows, unconfirmed)
         }
         None => chosen,
     }

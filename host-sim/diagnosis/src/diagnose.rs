@@ -1,8 +1,11 @@
 //! The method, from logs to a diagnosis, one stage after the other.
 
+use super::account::GapReduction;
+use super::budget::Budget;
 use super::calibration::Calibration;
 use super::confirm::Confirmed;
 use super::diagnosis::Diagnosis;
+use super::excitation::{Detectable, Excitation};
 use super::explain::evidence::{Evidence, evidence};
 use super::explain::profile::profiles;
 use super::explain::room_map::{RoomMap, room_map};
@@ -12,12 +15,13 @@ use super::formula::Formula;
 use super::gain::Gain;
 use super::method::Method;
 use super::progress::Stage;
+use super::propose::Experiment;
 use super::sample::HoldOut;
 use super::search::Fits;
 use super::split::{Parts, Split};
 use super::validate::{Validated, validate};
-use super::verdict::{Conclusion, Verdict, with_shares};
-use super::{account, excitation, formula, predictive_check, propose, remainder};
+use super::verdict::{Conclusion, Verdict, with_shares, with_witnesses};
+use super::{account, formula, predictive_check, propose, remainder};
 use mindgap_foundations::error::Result;
 use mindgap_foundations::schema_number::SchemaNumber;
 use mindgap_logs::inspection::Inspection;
@@ -40,8 +44,12 @@ pub struct Findings {
     pub formula: Option<Formula>,
     /// Residuals without and with each named effect.
     pub evidence: Vec<Evidence>,
+    /// The size of what its budget divides, nats.
+    pub gap_nats: f64,
     /// Map of the gap, if there is one.
     pub room_map: Option<RoomMap>,
+    /// The script that would say most about the cause, if several names are left, even where none is certain enough to be named.
+    pub proposal: Option<Experiment>,
 }
 
 /// Diagnoses logs with the default settings.
@@ -107,31 +115,41 @@ impl Findings {
         let formula = is_gap.then(|| formula::search(&confirmed, context, split.hold_out.as_ref())).flatten();
         let stated = formula.as_ref().zip(account.as_ref());
         let stated = stated.map(|(formula, account)| formula.stated(&account.reducible, context.seed));
+        let excitation = Excitation::around(&confirmed.chosen, context);
         let (reduction, budget) = account.map_or_else(Default::default, |a| (a.reduction, a.budget));
+        let Budget { parts: budget, nats: gap_nats } = budget;
+        let reduction = reduction.or_else(|| GapReduction::of_outliers(&confirmed.outliers, context.rows.rows.len()));
+        let proposal = (named || is_gap && context.is_driving).then(|| propose::next(&confirmed, context)).flatten();
         let diagnosis = Diagnosis {
             schema: SchemaNumber,
             verdict,
-            effects: with_shares(effects, &budget),
+            effects: with_shares(with_witnesses(effects, &confirmed, context), &budget),
             budget,
             strata: strata(&confirmed, verdict, context),
             reduction,
             final_positions: None,
-            experiment: named.then(|| propose::next(&confirmed, context)).flatten(),
+            experiment: proposal.clone().filter(|proposal| named && proposal.is_worthwhile(context)),
             formula: stated,
             profiles: if is_unexplained { profiles(&confirmed, context) } else { Vec::new() },
             scope,
             data: inspected.findings.clone(),
-            untestable: excitation::untestable(&confirmed.fits.null, context),
+            detectable: excitation.detectable(),
+            unconfirmed: confirmed.unconfirmed.clone(),
+            outliers: confirmed.outliers.clone(),
+            untestable: excitation.untestable(),
             notes,
+            sessions: Vec::new(),
         };
         Findings {
             diagnosis,
             applied: if named { confirmed.chosen.applied(&context.baseline().robot) } else { Vec::new() },
             robot: context.baseline().robot,
+            gap_nats,
             noise: confirmed.chosen.noise,
             formula,
             evidence: if named { evidence(&confirmed, context) } else { Vec::new() },
             room_map: room_map(&confirmed, verdict, context),
+            proposal,
         }
     }
 
@@ -141,17 +159,22 @@ impl Findings {
     }
 }
 
-/// If the robot moves without commands, what is compared can agree and still not say what moves it.
+/// If the robot moves without commands, what is compared can agree and still not say what moves it. No regression looks for what
+/// the counters of an untracked robot show beyond the effects; their scatter tells that there is something.
 fn conclusion(found: &Confirmed, moved_uncommanded: bool, robot: &Robot, context: &FitContext) -> Conclusion {
     let conclusion = Conclusion::of(found, robot, &context.calibration);
-    let is_open = moved_uncommanded && conclusion.verdict == Verdict::NoGap;
+    let is_untracked = context.rows.rows.iter().all(|row| row.motion.is_none());
+    let is_left = is_untracked && found.chosen.witnesses.leave_much(context.rows);
+    let is_open = (moved_uncommanded || is_left) && conclusion.verdict == Verdict::NoGap;
     if is_open { Conclusion { verdict: Verdict::Unknown, ..conclusion } } else { conclusion }
 }
 
-/// The effects that logs could not show, and other limits of a diagnosis of them.
-pub struct Excitation {
-    /// Ids of effects, in the order of the catalogue.
+/// What logs could show, and other limits of a diagnosis of them.
+pub struct Prospect {
+    /// Ids of the effects that they could not show, in the order of the catalogue.
     pub untestable: Vec<&'static str>,
+    /// The smallest strength of each effect that they could show.
+    pub detectable: Vec<Detectable>,
     /// One sentence each.
     pub notes: Vec<String>,
 }
@@ -160,10 +183,11 @@ pub struct Excitation {
 ///
 /// # Errors
 /// If the logs contain nothing to compare with the baseline.
-pub fn excitation(mut baseline: Baseline, inspected: &Inspection) -> Result<Excitation> {
+pub fn prospect(mut baseline: Baseline, inspected: &Inspection, method: Method) -> Result<Prospect> {
     let (split, Validated { notes, .. }) = split(&mut baseline, inspected)?;
-    let context = FitContext::new(&split.identification, Method::default());
-    Ok(Excitation { untestable: excitation::untestable(&Fitted::null(&context), &context), notes })
+    let context = FitContext::new(&split.identification, method);
+    let excitation = Excitation::around(&Fitted::null(&context), &context);
+    Ok(Prospect { untestable: excitation.untestable(), detectable: excitation.detectable(), notes })
 }
 
 /// The largest gains on some logs, before any threshold.
@@ -223,11 +247,11 @@ pub fn closed(simulator: &Simulator, applied: &[AppliedEffect], logs: &Logs) -> 
     let context = FitContext::new(&split.identification, Method::default());
     let given = Confirmed::given(applied, &context);
     let reduction = account::account(&given, &[], &context, split.confirming()).reduction;
-    Ok(reduction.map(|reduction| reduction.whole.reducible_closed))
+    Ok(reduction.and_then(|reduction| reduction.whole.reducible_closed))
 }
 
 /// Splits logs into rows of what the baseline knows, with the notes about them.
-fn split<'b>(baseline: &'b mut Baseline<'_>, inspected: &Inspection) -> Result<(Split<'b>, Validated)> {
+pub(super) fn split<'b>(baseline: &'b mut Baseline<'_>, inspected: &Inspection) -> Result<(Split<'b>, Validated)> {
     let parts = Parts::of(&inspected.logs, baseline);
     let mut validated = validate(baseline, &parts.identification, inspected)?;
     validated.notes.extend(parts.caveat(inspected.logs.runs.len()));

@@ -5,11 +5,15 @@ use serde::{Serialize, Serializer};
 
 use super::account::GapReduction;
 use super::budget::Part;
+use super::confirm::unconfirmed::Unconfirmed;
+use super::excitation::Detectable;
 use super::explain::profile::ResidualProfile;
 use super::explain::strata::Stratum;
 use super::formula::Statement;
+use super::outliers::Outliers;
 use super::propose::Experiment;
 use super::scope::Scope;
+use super::sessions::SessionFindings;
 use super::verdict::{NamedEffect, Verdict};
 use mindgap_foundations::schema_number::SchemaNumber;
 use mindgap_learning::evaluation::final_position::FinalPositionErrors;
@@ -29,8 +33,9 @@ pub struct Diagnosis {
     /// Where the gap lies.
     #[serde(rename = "where")]
     pub strata: Vec<Stratum>,
-    /// How far the gap shrinks with the effects, if held-out rows show a reducible gap.
-    #[serde(rename = "shrink")]
+    /// How far the gap shrinks with the effects, if held-out rows show a reducible gap. In JSON it is always an object.
+    #[serde(rename = "shrink", serialize_with = "or_none")]
+    #[schemars(with = "GapReduction")]
     pub reduction: Option<GapReduction>,
     /// Errors of final positions, if the logs are runs of a given controller.
     #[serde(rename = "endings")]
@@ -49,12 +54,25 @@ pub struct Diagnosis {
     pub scope: Scope,
     /// Defects of the logs.
     pub data: Vec<Finding>,
+    /// The smallest strength that these logs would show, of each effect that is not named.
+    pub detectable: Vec<Detectable>,
+    /// The effects that were found on fitted rows and not confirmed on held-out ones.
+    pub unconfirmed: Vec<Unconfirmed>,
+    /// Rows with residuals larger than noise explains, by channel.
+    pub outliers: Vec<Outliers>,
     /// Effects that these logs could not show: untestable, not absent.
     pub untestable: Vec<&'static str>,
     /// Other limits of this diagnosis, one sentence each.
     pub notes: Vec<String>,
+    /// What differs between sessions, where there are several.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub sessions: Vec<SessionFindings>,
 }
 
 fn as_sentence<S: Serializer>(experiment: &Option<Experiment>, to: S) -> Result<S::Ok, S::Error> {
     experiment.as_ref().map(Experiment::sentence).serialize(to)
+}
+
+fn or_none<S: Serializer>(reduction: &Option<GapReduction>, to: S) -> Result<S::Ok, S::Error> {
+    reduction.as_ref().unwrap_or(&GapReduction::NONE).serialize(to)
 }

@@ -1,9 +1,11 @@
 //! Fitting: the parameters of a hypothesis by maximum a posteriori, cross-validated between blocks.
 
+pub mod parts;
 mod problem;
 
 use std::ops::Range;
 
+use parts::Part;
 use problem::Problem;
 use rayon::prelude::*;
 
@@ -16,7 +18,9 @@ use super::motion_uncertainty::MotionUncertainty;
 use super::sample::{HoldOut, Identification, Sample};
 use super::scores::Scores;
 use super::sensor_cache::FacedRows;
+use super::witnesses::Witnesses;
 use mindgap_foundations::statistics::maximise::Point;
+use mindgap_foundations::statistics::summary::student_95;
 use mindgap_logs::Robot;
 use mindgap_models::effects::applied::AppliedEffect;
 use mindgap_models::effects::chain::EffectChain;
@@ -34,6 +38,8 @@ pub struct FitContext<'a> {
     pub calibration: Calibration,
     /// Seed of random draws.
     pub seed: u64,
+    /// See [`Method::is_driving`].
+    pub is_driving: bool,
     /// What the training logs leave open of the simulator's motion, as far as these rows can tell more.
     pub motion_uncertainty: Option<MotionUncertainty>,
     /// Nats by channel that the effects explain which the simulator has already.
@@ -52,23 +58,25 @@ pub struct Fitted {
     pub errors: Vec<f64>,
     /// Standard deviations of the residuals: forward (cm), lateral (cm), turn (rad).
     pub noise: [f64; 3],
+    /// Where the effects show on what the robot measures of its own motion.
+    pub witnesses: Witnesses,
     /// Log-likelihoods at the fitted parameters.
     pub scores: Scores,
     /// Log-likelihoods of each block at the parameters of the other blocks.
     pub cross_validated: Scores,
-    /// See [`Explanation::complexity_penalty`].
-    pub complexity_penalty: f64,
+    /// See [`Explanation::complexity_penalty`]: that of the effects that change the motion, and of those of the sensor alone.
+    pub complexity_penalties: [f64; 2],
 }
 
 /// Maximum number of iterations of a fit; curved valleys of two parameters take twenty.
 pub const MOST_ITERATIONS: usize = 30;
 /// Number of preliminary fits that are refined to convergence: more than twice the number of rivals with which an effect is
 /// ambiguous.
-const PROMISING: usize = 10;
+const PROMISING: usize = 7;
+/// A sketch is promising if it gains more, nats: what one parameter costs, fitted to rows on which it explains nothing.
+const LEAST_NATS: f64 = 1.0;
 /// A fit has converged when an iteration gains less, nats: a tenth of what a parameter costs.
 pub const TOLERANCE_NATS: f64 = 0.1;
-/// 95 % of a normal distribution lie within this many standard deviations.
-const NORMAL_95: f64 = 1.96;
 
 impl<'a> FitContext<'a> {
     /// Prepares fits to these rows.
@@ -78,6 +86,7 @@ impl<'a> FitContext<'a> {
             catalogue: candidates(method, rows),
             calibration: method.calibration_for(rows.rows.len(), rows.baseline.trained_on()),
             seed: method.seed,
+            is_driving: method.is_driving,
             motion_uncertainty: MotionUncertainty::of(rows),
             already_explained: already_explained(rows),
             top_speed: rows.top_speed(),
@@ -103,7 +112,9 @@ impl<'a> FitContext<'a> {
 /// Returns the effects that compete against this simulator.
 fn candidates(method: Method, rows: &Identification) -> Vec<&'static Effect> {
     let is_known = rows.baseline.motion.as_ref().is_none_or(MotionModel::is_learned);
-    method.catalogue.iter().copied().filter(|effect| is_known || !effect.needs_known_robot).collect()
+    let is_there = |effect: &&Effect| method.place.is_none_or(|place| effect.may_sit_in(place));
+    let competing = method.catalogue.iter().copied().filter(is_there);
+    competing.filter(|effect| is_known || !effect.needs_known_robot).collect()
 }
 
 fn already_explained(rows: &Identification) -> [f64; Channel::COUNT] {
@@ -121,11 +132,12 @@ impl Explanation for Fitted {
     }
 
     fn predict(&self, rows: &HoldOut) -> Scores {
-        self.scores_within(self.noise, rows)
+        let witnesses = self.hypothesis.witnessed(&self.witnesses, rows, &self.values);
+        self.scores_within(self.noise, rows).with_witnesses(&witnesses)
     }
 
     fn complexity_penalty(&self) -> f64 {
-        self.complexity_penalty
+        self.complexity_penalties.iter().sum()
     }
 }
 
@@ -144,14 +156,24 @@ impl Fitted {
 
     fn at(hypothesis: Hypothesis, values: Vec<f64>, context: &FitContext) -> Self {
         let noise = hypothesis.noise(context.rows, &values);
-        let scores = hypothesis.scores_within(noise, context.rows, &values);
+        let (witnesses, witnessed) = hypothesis.witnesses(context.rows, &values);
+        let scores = hypothesis.scores_within(noise, context.rows, &values).with_witnesses(&witnessed);
         let errors = vec![0.0; values.len()];
-        Fitted { hypothesis, values, errors, noise, cross_validated: scores.clone(), scores, complexity_penalty: 0.0 }
+        Fitted {
+            hypothesis,
+            values,
+            errors,
+            noise,
+            witnesses,
+            cross_validated: scores.clone(),
+            scores,
+            complexity_penalties: [0.0; 2],
+        }
     }
 
     /// The same effects with their parameters taken as given: nothing is left to cross-validate or to penalise.
     pub fn taken_as_given(&self) -> Self {
-        Fitted { cross_validated: self.scores.clone(), complexity_penalty: 0.0, ..self.clone() }
+        Fitted { cross_validated: self.scores.clone(), complexity_penalties: [0.0; 2], ..self.clone() }
     }
 
     /// Returns its effects at the fitted parameters.
@@ -181,6 +203,13 @@ impl Fitted {
         before..before + candidates[effect].variant.parameters.len()
     }
 
+    /// Returns the columns beyond commands and poses that show where in the robot one of its effects acts, by at least this
+    /// many nats.
+    pub fn witness(&self, effect: usize, nats: f64, rows: &Sample) -> Vec<&'static str> {
+        let decided_by = self.hypothesis.decided_by(effect, &self.witnesses, rows, &self.values, nats);
+        decided_by.into_iter().filter_map(Channel::column).collect()
+    }
+
     /// Returns its effects as a simulator file stores them.
     pub fn applied(&self, robot: &Robot) -> Vec<AppliedEffect> {
         let candidates = self.hypothesis.candidates.iter().enumerate();
@@ -192,9 +221,9 @@ impl Fitted {
         self.scores.total_of(channel) - other.scores.total_of(channel)
     }
 
-    /// Returns the 95 % interval of a parameter, clipped to its bounds.
+    /// Returns what chance leaves open of a parameter, as a 95 % interval by Student's law for the blocks, clipped to its bounds.
     pub fn interval(&self, parameter: usize) -> [f64; 2] {
-        let reach = NORMAL_95 * self.errors[parameter];
+        let reach = student_95(self.cross_validated.block_count()) * self.errors[parameter];
         let [low, high] =
             self.hypothesis.parameters().nth(parameter).map_or([f64::NEG_INFINITY, f64::INFINITY], |p| p.bounds);
         [(self.values[parameter] - reach).max(low), (self.values[parameter] + reach).min(high)]
@@ -211,41 +240,50 @@ impl Fitted {
         self.hypothesis.scores_within(noise, sample, &self.values)
     }
 
-    /// Adds one effect and refits all parameters, starting at these values and the variant's guesses.
+    /// Adds one effect and refits the parameters of its part, starting at these values and the variant's guesses.
     pub fn with(&self, candidate: Candidate, context: &FitContext) -> Fitted {
-        let (problem, sketch) = self.sketched_with(candidate, None, context);
-        problem.converge(sketch)
+        self.changed(Part::of(&candidate), context, |part| {
+            let (problem, sketch) = part.sketched_with(candidate, None, context);
+            problem.converge(sketch)
+        })
     }
 
-    /// Fits every variant of every effect alone.
-    pub fn with_each_alone(&self, context: &FitContext) -> Vec<Fitted> {
-        self.further_candidates(context).par_iter().map(|candidate| self.with(*candidate, context)).collect()
-    }
-
-    /// Adds each variant of each further effect. `singles` are the same variants fitted alone: one that touches other channels
-    /// than these effects need not be fitted again. Of the others only the most promising are fitted to convergence.
-    pub fn with_each(&self, singles: &[Fitted], context: &FitContext) -> Vec<Fitted> {
-        let further = self.further_candidates(context);
-        let separate = |candidate: &Candidate| {
-            singles.iter().find(|f| f.hypothesis.candidates[0] == *candidate).filter(|f| self.is_separate_from(f))
+    /// Fits every wanted variant of every effect alone. Of the effects of the motion, and of those of the sensor, only the most
+    /// promising are fitted to convergence.
+    pub fn with_each_alone(&self, is_wanted: impl Fn(&Candidate) -> bool + Sync, context: &FitContext) -> Vec<Fitted> {
+        let mut candidates = self.further_candidates(context);
+        candidates.retain(is_wanted);
+        let sketches: Vec<_> = candidates.par_iter().map(|c| self.sketched_with(*c, None, context)).collect();
+        let values: Vec<(bool, f64)> =
+            candidates.iter().zip(&sketches).map(|(c, (_, sketch))| (c.variant.moves(), sketch.value())).collect();
+        let ahead = |(moves, value): &(bool, f64)| values.iter().filter(|(m, v)| m == moves && v > value).count();
+        let finish = |((problem, sketch), value): ((Problem, Point), &(bool, f64))| {
+            if ahead(value) < PROMISING { problem.converge(sketch) } else { problem.settle(sketch) }
         };
-        let combined = further.par_iter().filter_map(|c| Some((*c, self.combined_with(separate(c)?))));
-        let mut fits: Vec<(Candidate, Fitted)> = combined.collect();
-        let faced =
-            self.hypothesis.senses().then(|| self.problem(self.hypothesis.clone(), context).faced(&self.values));
-        let sketches = further.par_iter().filter(|c| separate(c).is_none());
-        let mut sketches: Vec<_> = sketches.map(|c| (*c, self.sketched_with(*c, faced.as_ref(), context))).collect();
+        sketches.into_par_iter().zip(values.par_iter()).map(finish).collect()
+    }
+
+    /// Adds each variant of each further effect that changes this part. Only the most promising are fitted to convergence, and the
+    /// others are left out.
+    pub fn with_each(&self, part: Part, context: &FitContext) -> Vec<Fitted> {
+        let mut further = self.further_candidates(context);
+        further.retain(|candidate| Part::of(candidate) == part);
+        let faced = self.hypothesis.senses();
+        let faced = faced.then(|| self.problem(self.hypothesis.clone(), context).faced(&self.values));
+        let least = self.problem(self.hypothesis.clone(), context).sketched_value(&self.values, LEAST_NATS);
+        let sketches = further.par_iter().map(|c| (*c, self.sketched_with(*c, faced.as_ref(), context)));
+        let mut sketches: Vec<_> = sketches.filter(|(_, (_, sketch))| sketch.value() > least).collect();
         sketches.sort_by(|a, b| b.1.1.value().total_cmp(&a.1.1.value()));
         sketches.truncate(PROMISING);
-        fits.par_extend(sketches.into_par_iter().map(|(c, (problem, sketch))| (c, problem.converge(sketch))));
+        let converged = |(c, (problem, sketch)): (Candidate, (Problem, Point))| (c, problem.converge(sketch));
+        let mut fits: Vec<(Candidate, Fitted)> = sketches.into_par_iter().map(converged).collect();
         // In the order of the catalogue, however they were fitted.
-        let order = |candidate: &Candidate| further.iter().position(|c| c == candidate);
-        fits.sort_by_key(|(candidate, _)| order(candidate));
+        fits.sort_by_key(|(candidate, _)| further.iter().position(|c| c == candidate));
         fits.into_iter().map(|(_, fit)| fit).collect()
     }
 
     /// Returns each variant of each effect of the catalogue that is not included yet.
-    fn further_candidates(&self, context: &FitContext) -> Vec<Candidate> {
+    pub fn further_candidates(&self, context: &FitContext) -> Vec<Candidate> {
         let mut further = Candidate::all(&context.catalogue);
         let is_ray = context.baseline().sonar.as_ref().is_some_and(SensorLaw::is_ray);
         let is_quick = context.baseline().motion.as_ref().is_some_and(MotionModel::answers_within_a_step);
@@ -275,45 +313,24 @@ impl Fitted {
         Problem { hypothesis, untouched: &self.scores, context }
     }
 
-    /// Removes one effect and refits the others.
+    /// Removes one effect and refits the others of its part.
     pub fn without(&self, effect: usize, context: &FitContext) -> Fitted {
+        let removed = self.hypothesis.candidates[effect];
+        self.changed(Part::of(&removed), context, |part| part.refitted_without(&removed, context))
+    }
+
+    fn refitted_without(&self, removed: &Candidate, context: &FitContext) -> Fitted {
         let null = Fitted::null(context);
-        let mut candidates = self.hypothesis.candidates.clone();
-        candidates.remove(effect);
-        if candidates.is_empty() {
+        let effects: Vec<usize> =
+            (0..self.ids().len()).filter(|effect| self.hypothesis.candidates[*effect] != *removed).collect();
+        if effects.is_empty() {
             return null;
         }
-        let others = (0..=candidates.len()).filter(|i| *i != effect);
-        let values = others.flat_map(|i| self.values_of(i)).copied().collect();
+        let candidates = effects.iter().map(|effect| self.hypothesis.candidates[*effect]).collect();
+        let values = effects.iter().flat_map(|effect| self.values_of(*effect)).copied().collect();
         let problem = null.problem(self.hypothesis.of(candidates), context);
         let sketch = problem.sketch(vec![values], None);
         problem.converge(sketch)
-    }
-
-    /// Returns whether no channel is touched by both.
-    fn is_separate_from(&self, other: &Fitted) -> bool {
-        let touches = |f: &Fitted| [f.hypothesis.moves(), f.hypothesis.senses()];
-        touches(self).iter().zip(touches(other)).all(|(a, b)| !(*a && b))
-    }
-
-    /// Combines two separate fits. Their likelihoods multiply, so nothing needs to be fitted again.
-    fn combined_with(&self, other: &Fitted) -> Fitted {
-        let (moving, sensing) = if other.hypothesis.moves() { (other, self) } else { (self, other) };
-        let combine = |of: fn(&Fitted) -> &Scores| {
-            let sonar = Channel::ALL.into_iter().filter(|channel| channel.motion_axis().is_none());
-            sonar.fold(of(moving).clone(), |scores, channel| scores.with(channel, &of(sensing).of(channel)))
-        };
-        Fitted {
-            hypothesis: self
-                .hypothesis
-                .of([self.hypothesis.candidates.as_slice(), &other.hypothesis.candidates].concat()),
-            values: [self.values.as_slice(), &other.values].concat(),
-            errors: [self.errors.as_slice(), &other.errors].concat(),
-            noise: moving.noise,
-            scores: combine(|fit| &fit.scores),
-            cross_validated: combine(|fit| &fit.cross_validated),
-            complexity_penalty: self.complexity_penalty + other.complexity_penalty,
-        }
     }
 }
 

@@ -1,9 +1,10 @@
 //! Model-form error: how much of what an effect explains a better form of it could gain, measured on robots with one known
 //! effect.
 
-use super::confirm::confirmed_on_hold_out;
+use super::confirm::weigh;
 use super::fit::{FitContext, Fitted, best_of_each};
 use super::sample::HoldOut;
+use super::search::neighbours::Neighbours;
 use super::search::{Fits, Selection};
 use super::slot::Slot;
 
@@ -14,11 +15,12 @@ impl Fits {
     /// Returns the [`further_share`](super::calibration::Calibration::further_share) from which on a search names no other
     /// effect next to the one with this id, which is the only one there. Returns `None` if another effect is found first.
     pub fn form_error_fraction(&self, id: &str, context: &FitContext, hold_out: Option<&HoldOut>) -> Option<f64> {
-        let selection = |form_error: f64| Selection { form_error, ..Selection::new(self, context) };
-        let usual = Selection::new(self, context);
+        let neighbours = Neighbours::default();
+        let usual = Selection::new(self, &neighbours, context);
+        let selection = |form_error: f64| Selection { form_error, ..usual };
         let singles = best_of_each(self.singles.clone());
         let found = usual.first(&singles).filter(|found| found.ids() == [id])?;
-        let mut further = best_of_each(found.with_each(&self.singles, context));
+        let mut further = usual.with_one_more(found);
         further.retain(|fit| selection(0.0).is_worth_adding(fit, found));
         let mut swapped: Vec<Option<Swapped>> = further.iter().map(|_| None).collect();
         let mut names_another = |form_error: f64| {
@@ -47,7 +49,7 @@ impl Swapped {
     fn of(next: Fitted, selection: &Selection, hold_out: Option<&HoldOut>) -> Self {
         let (fit, slots) = selection.swap_best(next);
         let null = &selection.fits.null;
-        let confirmed = |rows| confirmed_on_hold_out(&fit, null, selection.context, rows).ids().len();
+        let confirmed = |rows| weigh(&fit, null, selection.context, rows).chosen.ids().len();
         let is_confirmed = hold_out.map_or(fit.ids().len(), confirmed) > 1;
         Swapped { fit, slots, is_confirmed }
     }

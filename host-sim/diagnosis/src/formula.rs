@@ -102,7 +102,7 @@ fn of(channel: Channel, underneath: &Fitted, context: &FitContext, hold_out: Opt
         Channel::Forward => (Stage::Motion, "forward_cm"),
         Channel::Lateral => (Stage::Motion, "lateral_cm"),
         Channel::Turn => (Stage::Motion, "turn_rad"),
-        Channel::EchoRate | Channel::EchoValue => (Stage::Reading, "echo_cm"),
+        _ => (Stage::Reading, "echo_cm"),
     };
     let variables: Vec<Circumstances> = rows.iter().map(|row| variables(stage, underneath, row.0, context)).collect();
     let terms = library::terms(stage, &variables);
@@ -191,7 +191,7 @@ fn definition(channel: Channel, key: &'static str, terms: &[Term], sum: &Sum) ->
             Channel::Forward => Change { forward_cm: text, ..Change::default() },
             Channel::Lateral => Change { lateral_cm: text, ..Change::default() },
             Channel::Turn => Change { turn_rad: text, ..Change::default() },
-            Channel::EchoRate | Channel::EchoValue => Change { echo_cm: text, ..Change::default() },
+            _ => Change { echo_cm: text, ..Change::default() },
         },
     }
 }

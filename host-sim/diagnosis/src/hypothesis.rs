@@ -2,9 +2,11 @@
 
 use std::ops::Range;
 
+use super::channel::Channel;
 use super::noise_model::{fitted_noise, log_density};
 use super::sample::Sample;
 use super::scores::Scores;
+use super::witnesses::{Seen, Witnesses};
 use mindgap_foundations::statistics::maximise::Bounds;
 use mindgap_learning::evaluation::observations::Observation;
 use mindgap_learning::evaluation::predictions::facing_in;
@@ -18,6 +20,10 @@ use mindgap_models::sonar::Outcomes;
 pub struct Hypothesis {
     /// The effects that the simulator has already, with their parameters.
     given: EffectChain,
+    /// The same up to the rims, as rotation counters see it.
+    given_to_the_rims: EffectChain,
+    /// The same up to the body, as a gyro sees it.
+    given_to_the_body: EffectChain,
     /// One variant of each further effect.
     pub candidates: Vec<Candidate>,
 }
@@ -25,7 +31,12 @@ pub struct Hypothesis {
 impl Hypothesis {
     /// The simulator as it is.
     pub fn null(baseline: &Baseline) -> Self {
-        Hypothesis { given: baseline.chain(), candidates: Vec::new() }
+        Hypothesis {
+            given: baseline.chain(),
+            given_to_the_rims: baseline.chain_to_the_rims(),
+            given_to_the_body: baseline.chain_to_the_body(),
+            candidates: Vec::new(),
+        }
     }
 
     /// The simulator without the effects that it has already.
@@ -35,7 +46,7 @@ impl Hypothesis {
 
     /// The same simulator with these effects.
     pub fn of(&self, candidates: Vec<Candidate>) -> Self {
-        Hypothesis { given: self.given.clone(), candidates }
+        Hypothesis { candidates, ..self.clone() }
     }
 
     /// The same effects and one more.
@@ -47,6 +58,66 @@ impl Hypothesis {
     pub fn at(&self, values: &[f64]) -> EffectChain {
         let variants: Vec<_> = self.candidates.iter().map(|c| c.variant).collect();
         self.given.with(&variants, values)
+    }
+
+    /// Decides by the likelihood of these rows where the effects show on the witnesses; also returns their score of every row.
+    pub fn witnesses(&self, sample: &Sample, values: &[f64]) -> (Witnesses, Vec<[f64; 3]>) {
+        let fitted = |witnesses: Witnesses| {
+            let seen = self.seen(&witnesses, values);
+            witnesses.fitted(&seen, sample)
+        };
+        let counted = |scores: &[[f64; 3]]| scores.iter().map(|[left, right, _]| left + right).sum::<f64>();
+        // One candidate after the other: all combinations would take twice as long for each further one.
+        Witnesses::undecided(&self.candidates, sample).into_iter().fold(
+            fitted(Witnesses::expected(&self.candidates)),
+            |best, candidate| {
+                let hidden = fitted(best.0.hidden(candidate));
+                if counted(&hidden.1) > counted(&best.1) { hidden } else { best }
+            },
+        )
+    }
+
+    /// Scores the witnesses of every row at `values`, as they were decided: left and right counter, gyro.
+    pub fn witnessed(&self, witnesses: &Witnesses, sample: &Sample, values: &[f64]) -> Vec<[f64; 3]> {
+        witnesses.scores(&self.seen(witnesses, values), &sample.rows, sample)
+    }
+
+    /// Returns the witnesses that show whether a candidate acts before them or behind: those that would be less likely by this
+    /// many nats if it were the other way round.
+    pub fn decided_by(
+        &self,
+        candidate: usize,
+        witnesses: &Witnesses,
+        sample: &Sample,
+        values: &[f64],
+        nats: f64,
+    ) -> Vec<Channel> {
+        let [as_it_is, other_way] =
+            [witnesses, &witnesses.reversed(candidate)].map(|seen| self.witnessed(seen, sample, values));
+        let lead = |witness: usize| as_it_is.iter().zip(&other_way).map(|(a, b)| a[witness] - b[witness]).sum::<f64>();
+        let witnesses = Channel::WITNESSES.into_iter().enumerate();
+        witnesses.filter(|(witness, _)| lead(*witness) >= nats).map(|(_, channel)| channel).collect()
+    }
+
+    fn seen(&self, witnesses: &Witnesses, values: &[f64]) -> Seen {
+        Seen {
+            rims: self.seen_at(&self.given_to_the_rims, values, witnesses.on_counters()),
+            body: self.seen_at(&self.given_to_the_body, values, witnesses.on_gyro()),
+        }
+    }
+
+    fn seen_at(&self, given: &EffectChain, values: &[f64], is_seen: &[bool]) -> EffectChain {
+        let mut rest = values;
+        let (mut variants, mut seen_values) = (Vec::new(), Vec::new());
+        for (candidate, is_seen) in self.candidates.iter().zip(is_seen) {
+            let (own, others) = rest.split_at(candidate.variant.parameters.len());
+            rest = others;
+            if *is_seen {
+                variants.push(candidate.variant);
+                seen_values.extend(own);
+            }
+        }
+        given.with(&variants, &seen_values)
     }
 
     /// Returns the free parameters, effect after effect.
@@ -92,14 +163,16 @@ impl Hypothesis {
 
     /// Scores every row at `values`, with the noise of motion fitted to these rows.
     pub fn scores(&self, sample: &Sample, values: &[f64]) -> Scores {
-        self.scores_within(self.noise(sample, values), sample, values)
+        let (_, witnesses) = self.witnesses(sample, values);
+        self.scores_within(self.noise(sample, values), sample, values).with_witnesses(&witnesses)
     }
 
     /// Scores every row at `values`; channels that no candidate touches are taken from `untouched`.
     pub fn scores_over(&self, untouched: &Scores, sample: &Sample, values: &[f64]) -> Scores {
         let mut scores = untouched.clone();
         if self.moves() {
-            scores = scores.with_motion(&self.motion(sample, values));
+            let (_, witnesses) = self.witnesses(sample, values);
+            scores = scores.with_motion(&self.motion(sample, values)).with_witnesses(&witnesses);
         }
         if self.senses() {
             scores = scores.with_sonar(&self.all_sonar(sample, values));
@@ -107,7 +180,8 @@ impl Hypothesis {
         scores
     }
 
-    /// Scores every row at `values` with given standard deviations of motion: forward (cm), lateral (cm), turn (rad).
+    /// Scores every row at `values` with given standard deviations of motion: forward (cm), lateral (cm), turn (rad). Witnesses are
+    /// not scored.
     pub fn scores_within(&self, noise: [f64; 3], sample: &Sample, values: &[f64]) -> Scores {
         let motion = densities(&sample.rows, &sample.residuals(&self.at(values)), noise);
         Scores::zero(sample.row_blocks()).with_motion(&motion).with_sonar(&self.all_sonar(sample, values))
@@ -115,7 +189,14 @@ impl Hypothesis {
 
     /// Scores every block at values of its own, with the given noise; channels that no candidate touches are taken from
     /// `untouched`.
-    pub fn scores_by_block(&self, values: &[Vec<f64>], noise: [f64; 3], untouched: &Scores, sample: &Sample) -> Scores {
+    pub fn scores_by_block(
+        &self,
+        values: &[Vec<f64>],
+        noise: [f64; 3],
+        witnesses: &Witnesses,
+        untouched: &Scores,
+        sample: &Sample,
+    ) -> Scores {
         let mut scores = untouched.clone();
         let blocks = || values.iter().enumerate().map(|(block, values)| (sample.of_block(block), values));
         if self.moves() {
@@ -124,6 +205,10 @@ impl Hypothesis {
                 densities(rows, &sample.residuals_of(rows, &self.at(values)), noise)
             });
             scores = scores.with_motion(&motion.collect::<Vec<_>>());
+            let witnessed = blocks().flat_map(|(range, values)| {
+                witnesses.scores(&self.seen(witnesses, values), &sample.rows[range], sample)
+            });
+            scores = scores.with_witnesses(&witnessed.collect::<Vec<_>>());
         }
         if self.senses() {
             let sonar = blocks().flat_map(|(range, values)| self.sonar_of(sample, range, values));

@@ -7,7 +7,6 @@
 use super::channel::Channel;
 use super::confirm::Confirmed;
 use super::fit::Fitted;
-use super::hypothesis::Hypothesis;
 use super::sample::{RowSet, Sample};
 use super::scores::Scores;
 use mindgap_models::effects::Candidate;
@@ -28,7 +27,7 @@ impl Ledger {
     /// Accounts for a gap on some rows.
     pub fn of(found: &Confirmed, rows: RowSet) -> Self {
         let (sample, remaining_noise) = (rows.sample(), remaining_noise(found));
-        let scores = |fit: &Fitted| fit.scores_within(remaining_noise, sample);
+        let scores = |fit: &Fitted| accounted(fit, remaining_noise, found, sample);
         let (null, chosen) = (scores(&found.fits.null), scores(&found.chosen));
         let mut unexplained = Scores::zero(sample.row_blocks());
         for remainder in found.beyond_chosen.iter().filter(|r| r.counts()) {
@@ -41,10 +40,7 @@ impl Ledger {
         let effects = shapley(ids.len(), |kept| match kept.len() {
             0 => Scores::zero(sample.row_blocks()),
             all if all == ids.len() => &chosen - &null,
-            _ => {
-                let (hypothesis, values) = subset(&found.chosen, kept);
-                &hypothesis.scores_within(remaining_noise, sample, &values) - &null
-            }
+            _ => &accounted(&subset(&found.chosen, kept), remaining_noise, found, sample) - &null,
         });
         let effects = ids.into_iter().zip(effects).collect();
         Ledger { effects, unexplained, noise: excess_noise(found, sample), remaining_noise }
@@ -68,7 +64,7 @@ impl Ledger {
 
     /// Returns the total gain of other effects than the chosen ones, with the same noise.
     pub fn gained_by(&self, fit: &Fitted, found: &Confirmed, sample: &Sample) -> f64 {
-        let scores = |fit: &Fitted| fit.scores_within(self.remaining_noise, sample);
+        let scores = |fit: &Fitted| accounted(fit, self.remaining_noise, found, sample);
         (&scores(fit) - &scores(&found.fits.null)).total()
     }
 }
@@ -128,10 +124,22 @@ fn worth_of_sets(effects: usize, gained: impl Fn(&[usize]) -> Scores) -> Vec<Sco
 }
 
 /// Returns some of the effects, at the parameters that they have together with the others.
-fn subset(chosen: &Fitted, kept: &[usize]) -> (Hypothesis, Vec<f64>) {
+fn subset(chosen: &Fitted, kept: &[usize]) -> Fitted {
     let candidates: Vec<Candidate> = kept.iter().map(|i| chosen.hypothesis.candidates[*i]).collect();
     let values = kept.iter().flat_map(|i| chosen.values_of(*i)).copied().collect();
-    (chosen.hypothesis.of(candidates), values)
+    let (hypothesis, witnesses) = (chosen.hypothesis.of(candidates), chosen.witnesses.of(kept));
+    Fitted { hypothesis, values, witnesses, ..chosen.clone() }
+}
+
+/// Scores rows with the noise that remains in the end. Simulated runs have no witnesses, which are left out; but of a robot that
+/// nobody tracked they are all that shows its motion.
+fn accounted(fit: &Fitted, noise: [f64; 3], found: &Confirmed, sample: &Sample) -> Scores {
+    let scores = fit.scores_within(noise, sample);
+    if sample.rows.iter().any(|row| row.motion.is_some()) {
+        return scores;
+    }
+    let witnesses = fit.witnesses.within(&found.chosen.witnesses);
+    scores.with_witnesses(&fit.hypothesis.witnessed(&witnesses, sample, &fit.values))
 }
 
 #[cfg(test)]

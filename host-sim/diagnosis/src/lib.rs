@@ -10,6 +10,7 @@
 //! [`minimal`] is the same method in a few pages. Read it first.
 
 pub mod account;
+pub mod between_sessions;
 pub mod budget;
 pub mod calibration;
 pub mod channel;
@@ -25,31 +26,38 @@ mod form_error;
 pub mod formula;
 pub mod gain;
 pub mod hypothesis;
+pub mod interval;
 mod ledger;
 pub mod method;
 pub mod minimal;
 pub mod motion_uncertainty;
 pub mod noise_model;
 pub mod omnibus;
+pub mod outliers;
 mod predictive_check;
 pub mod progress;
 pub mod propose;
 pub mod remainder;
 pub mod request;
 mod residuals;
+pub mod ruler;
 pub mod sample;
 pub mod scope;
 pub mod scores;
 pub mod search;
 mod sensor_cache;
+pub mod sensors;
+pub mod sessions;
 pub mod slot;
 pub mod split;
+mod strength;
 pub mod survey;
 #[cfg(test)]
 pub(crate) mod test_support;
 pub mod validate;
 pub mod verdict;
 pub mod wider_noise;
+pub mod witnesses;
 
 pub use diagnose::{Findings, diagnose, findings, findings_watched};
 pub use diagnosis::Diagnosis;

@@ -2,17 +2,22 @@
 
 use super::calibration::Calibration;
 use super::channel::Channel;
-use mindgap_models::effects::{CATALOGUE, Effect};
+use mindgap_models::effects::{CATALOGUE, Effect, Place};
 
 /// The candidates, thresholds and seed of a diagnosis.
 #[derive(Clone, Copy)]
 pub struct Method {
     /// The effects that compete.
     pub catalogue: &'static [&'static Effect],
+    /// Where these sit; `None` if anywhere.
+    pub place: Option<Place>,
     /// The thresholds.
     pub calibration: Calibration,
     /// Seed of bootstrap intervals and simulated noise. The verdict does not depend on it.
     pub seed: u64,
+    /// Whether a robot is there to drive what is proposed: then a script is proposed even between names that are not certain
+    /// enough to be reported.
+    pub is_driving: bool,
 }
 
 impl Method {
@@ -22,12 +27,13 @@ impl Method {
     /// Returns the thresholds for this number of rows, among all that competes, against a simulator that learned its motion
     /// from `trained_on` steps.
     pub fn calibration_for(&self, rows: usize, trained_on: Option<f64>) -> Calibration {
-        self.calibration.among(self.catalogue.len(), Channel::COUNT).for_rows(rows, trained_on)
+        self.calibration.among(self.catalogue.len(), Channel::SIMULATED.len()).for_rows(rows, trained_on)
     }
 }
 
 impl Default for Method {
     fn default() -> Self {
-        Method { catalogue: CATALOGUE, calibration: Calibration::shipped(), seed: Method::SEED }
+        let calibration = Calibration::shipped();
+        Method { catalogue: CATALOGUE, place: None, calibration, seed: Method::SEED, is_driving: false }
     }
 }

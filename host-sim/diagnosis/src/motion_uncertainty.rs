@@ -92,7 +92,7 @@ impl MotionUncertainty {
 fn row_features(reference: &MotionBias, drive: &FilteredDrive, row: &Observation) -> [f64; FEATURES] {
     let mut sum = [0.0; FEATURES];
     for step in std::iter::once(&row.context).chain(&row.following_steps) {
-        let speeds = drive.speeds(&step.commands, 0, &step.robot);
+        let speeds = drive.speeds_of(&step.commands, &step.pieces, &step.robot);
         let of_step: [f64; FEATURES] = features(speeds.inputs(), reference.scale.share());
         sum.iter_mut().zip(of_step).for_each(|(sum, feature)| *sum += feature);
     }

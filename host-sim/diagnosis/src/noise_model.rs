@@ -10,7 +10,7 @@ use mindgap_foundations::statistics::summary::median;
 /// Fraction of steps in which the tracker fails. Trackers that fail more often should be repaired, not modelled.
 const OUTLIERS: f64 = 0.01;
 /// Outliers are uniform within this distance of the prediction: a room's width forward and sideways, half a turn.
-const REACH: [f64; 3] = [100.0, 100.0, std::f64::consts::PI];
+pub const REACH: [f64; 3] = [100.0, 100.0, std::f64::consts::PI];
 /// The scale of Student's distribution that fits the standard normal distribution best.
 pub const SCALE_OF_NORMAL: f64 = 0.856_621;
 /// Half of Student's distribution lies within this many scales.

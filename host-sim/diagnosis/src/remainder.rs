@@ -19,13 +19,13 @@ pub struct Remainder {
 
 /// Returns the structured residual of a fit in each channel.
 pub fn remainders(fit: &Fitted, context: &FitContext) -> Vec<Remainder> {
-    Channel::ALL.par_iter().map(|channel| Remainder::of(*channel, fit, context)).collect()
+    Channel::SIMULATED.par_iter().map(|channel| Remainder::of(*channel, fit, context)).collect()
 }
 
 /// Returns the largest gain of a regression in any channel, before any gate.
 pub fn largest_gain(fit: &Fitted, context: &FitContext) -> Gain {
     let of_channel = |channel: &Channel| Regression::of(*channel, fit, context).gain(context);
-    let gains: Vec<Gain> = Channel::ALL.par_iter().map(of_channel).collect();
+    let gains: Vec<Gain> = Channel::SIMULATED.par_iter().map(of_channel).collect();
     gains.into_iter().max_by(|a, b| a.winsorized_nats.total_cmp(&b.winsorized_nats)).unwrap_or(Gain::NONE)
 }
 

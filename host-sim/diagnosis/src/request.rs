@@ -5,6 +5,7 @@ use mindgap_core::controller::Controller;
 use super::diagnose::{Findings, findings_watched};
 use super::method::Method;
 use super::progress::Stage;
+use super::sensors::{Comparison, with_further};
 use super::split;
 use mindgap_foundations::error::{Error, Result};
 use mindgap_learning::evaluation::final_position::final_position_errors;
@@ -44,6 +45,11 @@ impl<'a> Request<'a> {
         if self.controller.is_some() && self.simulator.is_none() {
             return Err(Error::new("comparing the final positions of a controller needs a simulator that can run it"));
         }
+        let heard = if logs.sensors().are_several() || self.simulator.is_some_and(|of| !of.further.is_empty()) {
+            logs.by_sensor()
+        } else {
+            Vec::new()
+        };
         // Defects show in the rows as they were logged.
         let mut inspected = Inspection::new(logs);
         inspected.logs = self.in_steps(inspected.logs)?;
@@ -51,6 +57,11 @@ impl<'a> Request<'a> {
             same_robot(&simulator.robot, &inspected.logs.robot)?;
         }
         let mut findings = findings_watched(self.baseline(&inspected.logs)?, &inspected, self.method, watch)?;
+        if !heard.is_empty() {
+            let in_steps = |logs| self.in_steps(logs);
+            let comparison = Comparison { simulator: self.simulator, method: self.method, in_steps: &in_steps };
+            findings = with_further(findings, &heard, &comparison)?;
+        }
         let logs = inspected.logs;
         if let Some((simulator, controller)) = self.simulator.zip(self.controller) {
             let mut improved = simulator.clone();
@@ -82,7 +93,7 @@ impl<'a> Request<'a> {
         }
         let mut simulator = match self.simulator {
             Some(simulator) => simulator.clone(),
-            None => textbook::simulator(&kinematic::baseline(logs), findings.noise.into())?,
+            None => textbook_of(logs, findings.noise)?,
         };
         simulator.added.extend(effects);
         Ok(simulator)
@@ -110,4 +121,14 @@ impl<'a> Request<'a> {
             Ok(logs)
         }
     }
+}
+
+/// Returns the textbook with all range sensors of the logs as a simulator.
+fn textbook_of(logs: &Logs, noise: [f64; 3]) -> Result<Simulator> {
+    let of = |logs: &Logs| textbook::simulator(&kinematic::baseline(logs), noise.into());
+    let mut all = Simulator { sensor: logs.sensors().first_table().map(str::to_owned), ..of(logs)? };
+    for heard in logs.by_sensor().into_iter().skip(1) {
+        all = all.with_sensor_of(&heard.sensor, of(&heard.logs)?);
+    }
+    Ok(all)
 }

@@ -48,7 +48,13 @@ impl Scores {
 
     /// Replaces echo rate and echo value of every row.
     pub fn with_sonar(mut self, sonar: &[[f64; 2]]) -> Self {
-        self.nats.iter_mut().zip(sonar).for_each(|(row, sonar)| row[3..].copy_from_slice(sonar));
+        self.nats.iter_mut().zip(sonar).for_each(|(row, sonar)| row[3..5].copy_from_slice(sonar));
+        self
+    }
+
+    /// Replaces the witnesses of every row: left and right counter, gyro.
+    pub fn with_witnesses(mut self, witnesses: &[[f64; 3]]) -> Self {
+        self.nats.iter_mut().zip(witnesses).for_each(|(row, witnesses)| row[5..].copy_from_slice(witnesses));
         self
     }
 
@@ -87,13 +93,20 @@ impl Scores {
     pub fn by_row(&self) -> Vec<f64> {
         self.nats
             .iter()
-            .map(|[forward, lateral, turn, rate, value]| forward + lateral + turn + (rate + value))
+            .map(|[forward, lateral, turn, rate, value, left, right, gyro]| {
+                forward + lateral + turn + (rate + value) + (left + right + gyro)
+            })
             .collect()
     }
 
     /// Sums all channels of every block.
     pub fn by_block(&self) -> Vec<f64> {
         self.blocks.sums(&self.by_row())
+    }
+
+    /// Returns the number of blocks.
+    pub fn block_count(&self) -> usize {
+        self.blocks.count
     }
 
     /// Sums all rows and channels.
@@ -137,7 +150,10 @@ mod tests {
     fn channels_are_the_columns_and_rows_and_blocks_their_sums() {
         let blocks = Blocks { of_row: [0, 0, 2].into(), count: 3 };
         let row = Scores::zero(&blocks).with_motion(&[[1.0, 2.0, 3.0]; 3]).with_sonar(&[[4.0, 5.0]; 3]);
-        assert_eq!(Channel::ALL.map(|channel| row.of(channel)[0]), [1.0, 2.0, 3.0, 4.0, 5.0]);
+        assert_eq!(Channel::SIMULATED.map(|channel| row.of(channel)[0]), [1.0, 2.0, 3.0, 4.0, 5.0]);
+        let witnessed = row.clone().with_witnesses(&[[6.0, 7.0, 8.0]; 3]);
+        assert_eq!(Channel::WITNESSES.map(|channel| witnessed.of(channel)[0]), [6.0, 7.0, 8.0]);
+        assert_eq!(witnessed.by_row(), [36.0; 3]);
         assert_eq!((row.by_row(), row.by_block(), row.total()), (vec![15.0; 3], vec![30.0, 0.0, 15.0], 45.0));
         assert_eq!(row.only(&[Channel::Turn, Channel::EchoRate]).by_row(), [7.0; 3]);
         assert_eq!((&row - &row.scaled(0.5)).total_of(Channel::EchoValue), 7.5);

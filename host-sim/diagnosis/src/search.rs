@@ -1,5 +1,7 @@
 //! Search: which effects together explain the gap best, and what could take the place of each.
 
+pub(super) mod neighbours;
+
 use super::calibration::Calibration;
 use super::explanation::Explanation;
 use super::fit::{FitContext, Fitted, best_of_each};
@@ -8,13 +10,14 @@ use super::omnibus::Regression;
 use super::remainder::{Remainder, remainders};
 use super::slot::{FurtherGain, Slot, is_ambiguous};
 use mindgap_models::effects::Candidate;
+use neighbours::Neighbours;
 
 /// The first stage: every effect fitted alone.
 #[derive(Clone)]
 pub struct Fits {
     /// The simulator as it is.
     pub null: Fitted,
-    /// Every variant of every effect alone.
+    /// Every variant of every effect that could be alone.
     pub singles: Vec<Fitted>,
 }
 
@@ -30,11 +33,14 @@ pub struct Search {
     pub beyond_null: Vec<Remainder>,
     /// The structured residual that the chosen effects leave, by channel.
     pub beyond_chosen: Vec<Remainder>,
+    /// What was fitted on the way.
+    pub(super) neighbours: Neighbours,
 }
 
 /// The rules by which effects are selected.
 pub(super) struct Selection<'a> {
     pub fits: &'a Fits,
+    pub neighbours: &'a Neighbours,
     pub context: &'a FitContext<'a>,
     /// Fraction of what effects explain in a channel that a better form of them could gain there.
     pub form_error: f64,
@@ -49,15 +55,18 @@ const LOGGED: usize = 5;
 const ALWAYS_FREE: [(&str, &str); 2] = [("latency", "delay"), ("inertia", "first_order_lag")];
 
 impl Fits {
-    /// Fits every variant of every effect alone.
+    /// Fits every variant of every effect alone. Where some of the motion is free under every hypothesis, no effect of the motion
+    /// is ever alone.
     pub fn of(context: &FitContext) -> Self {
         let null = Fitted::null(context);
-        Fits { singles: null.with_each_alone(context), null }
+        let is_ever_alone = |candidate: &Candidate| !candidate.variant.moves() || always_free(context).is_empty();
+        Fits { singles: null.with_each_alone(is_ever_alone, context), null }
     }
 
     /// Returns the largest gain of a single effect, as it would have to count alone.
     pub fn best_single(&self, context: &FitContext) -> Gain {
-        let selection = Selection::new(self, context);
+        let neighbours = Neighbours::default();
+        let selection = Selection::new(self, &neighbours, context);
         let singles = best_of_each(self.singles.clone());
         let gains = singles.iter().map(|single| selection.gain_alone(single, &singles));
         gains.max_by(|a, b| a.winsorized_nats.total_cmp(&b.winsorized_nats)).unwrap_or(Gain::NONE)
@@ -66,86 +75,77 @@ impl Fits {
     /// Adds one effect at a time. After each addition effects are swapped for better ones, and those that the others make
     /// redundant are pruned.
     pub fn search(self, context: &FitContext) -> Search {
-        let (chosen, slots) = Selection::new(&self, context).select();
+        let neighbours = Neighbours::default();
+        let selection = Selection::new(&self, &neighbours, context);
+        let chosen = selection.select();
+        let slots = selection.slots_of(&chosen);
         let beyond_null = remainders(&self.null, context);
-        Search { beyond_null, beyond_chosen: remainders(&chosen, context), fits: self, chosen, slots }
+        Search { beyond_null, beyond_chosen: remainders(&chosen, context), fits: self, chosen, slots, neighbours }
     }
 }
 
 impl Search {
     /// Chooses other effects in place of those that were found.
     pub fn choosing(self, chosen: Fitted, context: &FitContext) -> Self {
-        let slots = Selection::new(&self.fits, context).slots_of(&chosen);
+        let slots = Selection::new(&self.fits, &self.neighbours, context).slots_of(&chosen);
         Search { beyond_chosen: remainders(&chosen, context), chosen, slots, ..self }
     }
 }
 
 impl<'a> Selection<'a> {
-    pub fn new(fits: &'a Fits, context: &'a FitContext<'a>) -> Self {
-        Selection { fits, context, form_error: context.calibration.further_share, always_free: 0 }
+    pub fn new(fits: &'a Fits, neighbours: &'a Neighbours, context: &'a FitContext<'a>) -> Self {
+        Selection { fits, neighbours, context, form_error: context.calibration.further_share, always_free: 0 }
     }
 
-    fn select(&self) -> (Fitted, Vec<Slot>) {
+    fn select(&self) -> Fitted {
         let best_singles = best_of_each(self.fits.singles.clone());
         self.log_singles(&best_singles);
-        let (chosen, slots) = match (self.with_always_free(), self.first(&best_singles)) {
+        let chosen = match (self.with_always_free(), self.first(&best_singles)) {
             (Some(free), _) => {
                 let searching = Selection { always_free: free.ids().len(), ..*self };
-                let (chosen, _) = searching.add_further(free, Vec::new());
-                let slots = self.slots_of(&chosen);
-                self.prune(chosen, slots)
+                self.prune(searching.add_further(free))
             }
-            (None, Some(first)) => {
-                let gain = self.further_gain(first, &self.fits.null);
-                let slot = Slot::new(self.fits.null.clone(), best_singles.clone(), gain);
-                self.add_further(first.clone(), vec![slot])
-            }
-            (None, None) => (self.fits.null.clone(), Vec::new()),
+            (None, Some(first)) => self.add_further(first.clone()),
+            (None, None) => self.fits.null.clone(),
         };
-        match self.without_false_noise(&chosen) {
-            Some(others) => {
-                let slots = self.slots_of(&others);
-                (others, slots)
-            }
-            None => (chosen, slots),
-        }
+        self.without_false_noise(&chosen).unwrap_or(chosen)
     }
 
     /// Adds one effect at a time to those chosen so far, as long as one is worth it.
-    fn add_further(&self, mut chosen: Fitted, mut slots: Vec<Slot>) -> (Fitted, Vec<Slot>) {
+    fn add_further(&self, mut chosen: Fitted) -> Fitted {
         let most_effects = self.always_free + self.calibration().judgement.most_effects;
         while !chosen.ids().is_empty() && chosen.ids().len() < most_effects {
-            let further = best_of_each(chosen.with_each(&self.fits.singles, self.context));
+            let further = self.with_one_more(&chosen);
             for fit in further.iter().take(LOGGED) {
                 log::info!("{}: {}", fit.name(), self.further_gain(fit, &chosen).in_words());
             }
             let Some(next) = further.into_iter().find(|fit| self.is_worth_adding(fit, &chosen)) else { break };
-            let (swapped, slots_of_swapped) = self.swap_best(next);
-            if !self.is_clear(&swapped, &slots_of_swapped, &chosen) {
+            let (swapped, slots) = self.swap_best(next);
+            if !self.is_clear(&swapped, &slots, &chosen) {
                 log::info!("{} is ambiguous with many others", swapped.name());
                 break;
             }
             let evidence_before = chosen.log_evidence();
-            (chosen, slots) = self.prune(swapped, slots_of_swapped);
+            chosen = self.prune(swapped);
             log::info!("{} together gain {:.1} nats", chosen.name(), chosen.gain_over(&self.fits.null).nats);
             // A swap back to what was pruned would repeat forever.
             if chosen.log_evidence() <= evidence_before {
                 break;
             }
         }
-        (chosen, slots)
+        chosen
     }
 
     /// Returns the fit of what is free under every hypothesis; `None` where nothing is.
     fn with_always_free(&self) -> Option<Fitted> {
-        let motion = self.context.baseline().motion.as_ref()?;
-        let free = ALWAYS_FREE
-            .iter()
-            .filter_map(|(effect, variant)| Candidate::named_in(&self.context.catalogue, effect, variant));
-        let fit = |fit: Fitted, candidate: Candidate| fit.with(candidate, self.context);
-        let fitted = (!motion.is_learned()).then(|| free.fold(self.fits.null.clone(), fit))?;
-        log::info!("always free: {}", fitted.name());
-        (!fitted.ids().is_empty()).then_some(fitted)
+        let free = always_free(self.context);
+        let fitted = free.iter().fold(self.fits.null.clone(), |fit, candidate| fit.with(*candidate, self.context));
+        (!free.is_empty()).then_some(fitted)
+    }
+
+    /// Returns the best fit of each further effect added to these, best first, as far as it gains anything over them.
+    pub fn with_one_more(&self, fit: &Fitted) -> Vec<Fitted> {
+        self.neighbours.of(fit, self.fits, self.context)
     }
 
     fn log_singles(&self, singles: &[Fitted]) {
@@ -209,14 +209,13 @@ impl<'a> Selection<'a> {
     }
 
     /// Drops effects that would no longer be added to the others.
-    fn prune(&self, chosen: Fitted, slots: Vec<Slot>) -> (Fitted, Vec<Slot>) {
-        let redundant = slots.iter().filter(|slot| !self.counts(&slot.gain)).map(|slot| &slot.without);
-        match redundant.max_by(|a, b| a.log_evidence().total_cmp(&b.log_evidence())).cloned() {
-            Some(fewer) => {
-                let slots = self.slots_of(&fewer);
-                self.prune(fewer, slots)
-            }
-            None => (chosen, slots),
+    fn prune(&self, chosen: Fitted) -> Fitted {
+        let without = |effect| chosen.without(effect, self.context);
+        let fewer = (self.always_free..chosen.ids().len()).map(without);
+        let redundant = fewer.filter(|fewer| !self.counts(&self.further_gain(&chosen, fewer)));
+        match redundant.max_by(|a, b| a.log_evidence().total_cmp(&b.log_evidence())) {
+            Some(fewer) => self.prune(fewer),
+            None => chosen,
         }
     }
 
@@ -237,12 +236,19 @@ impl<'a> Selection<'a> {
     pub fn slots_of(&self, chosen: &Fitted) -> Vec<Slot> {
         let slot = |effect: usize| {
             let without = chosen.without(effect, self.context);
-            let taken = best_of_each(without.with_each(&self.fits.singles, self.context));
+            let taken = self.with_one_more(&without);
             let gain = self.further_gain(chosen, &without);
             Slot::new(without, taken, gain)
         };
         (self.always_free..chosen.ids().len()).map(slot).collect()
     }
+}
+
+/// Returns what is free under every hypothesis against this baseline.
+fn always_free(context: &FitContext) -> Vec<Candidate> {
+    let is_textbook = context.baseline().motion.as_ref().is_some_and(|motion| !motion.is_learned());
+    let free = ALWAYS_FREE.iter().filter(|_| is_textbook);
+    free.filter_map(|(effect, variant)| Candidate::named_in(&context.catalogue, effect, variant)).collect()
 }
 
 #[cfg(test)]

@@ -16,13 +16,16 @@ pub struct SensorCache<'c, 's> {
     sample: &'s Sample<'s>,
     /// What the sensor faced in an earlier fit to the same rows.
     earlier: Option<&'c FacedRows<'s>>,
-    motion: RefCell<Recent<Vec<f64>, Vec<[f64; 3]>>>,
+    motion: RefCell<Recent<Vec<f64>, Moved>>,
     sonar: RefCell<Recent<Vec<f64>, Vec<[f64; 2]>>>,
     faced: Vec<RefCell<FacedRow<'s>>>,
 }
 
 /// What the sensor faced at each row.
 pub struct FacedRows<'s>(Vec<FacedRow<'s>>);
+
+/// Scores of the motion and of its witnesses.
+type Moved = [Vec<[f64; 3]>; 2];
 
 type FacedRow<'s> = Recent<SensorPose, Option<Faced<'s>>>;
 
@@ -53,8 +56,10 @@ impl<'c, 's> SensorCache<'c, 's> {
         let values_of = |is_touched: fn(&Variant) -> bool| hypothesis.values_of(values, is_touched);
         let mut scores = untouched.clone();
         if hypothesis.moves() {
-            let evaluate = || hypothesis.motion(self.sample, values);
-            scores = scores.with_motion(self.motion.borrow_mut().get(values_of(Variant::moves), evaluate));
+            let evaluate = || [hypothesis.motion(self.sample, values), hypothesis.witnesses(self.sample, values).1];
+            let mut recent = self.motion.borrow_mut();
+            let [motion, witnesses] = recent.get(values_of(Variant::moves), evaluate);
+            scores = scores.with_motion(motion).with_witnesses(witnesses);
         }
         if hypothesis.senses() {
             let rows = 0..self.sample.rows.len();

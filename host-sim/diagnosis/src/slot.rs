@@ -97,7 +97,7 @@ mod tests {
             // Leads of 7 and −1 differ from their mean by 4: an error of 8 nats, added to the 3 of strong evidence.
             let z_squared = 6.0 * 6.0 / (8.0 * 8.0 + 3.0 * 3.0);
             assert!((against([3.0, 11.0]) - libm::exp(-0.5 * z_squared)).abs() < 1e-12);
-            let more_complex = Fitted { complexity_penalty: 1.0, ..fit(&FARTHER, [10.0, 10.0]) };
+            let more_complex = Fitted { complexity_penalties: [1.0, 0.0], ..fit(&FARTHER, [10.0, 10.0]) };
             let z = 1.0 / 3.0;
             assert!(
                 (relative_likelihood(&winner, &more_complex, &CALIBRATION) - libm::exp(-0.5 * z * z)).abs() < 1e-12

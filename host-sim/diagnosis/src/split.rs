@@ -3,14 +3,14 @@
 use super::sample::{HoldOut, Identification, RowSet};
 use mindgap_learning::evaluation::observations::Observations;
 use mindgap_learning::evaluation::repeats::weighted;
-use mindgap_logs::Logs;
+use mindgap_logs::{Logs, Run};
 use mindgap_models::effects::context::HISTORY;
 use mindgap_models::simulator::baseline::Baseline;
 
 /// One block in this many is held out: a quarter of the rows confirms a gain within twice the error of the others.
 const EVERY: usize = 4;
 /// With fewer runs than this none is held out unless they are long.
-const FEWEST_RUNS: usize = 8;
+pub const FEWEST_RUNS: usize = 8;
 /// Parts of fewer runs replace runs if they have this many rows: about one minute of driving.
 const AS_A_RUN: usize = 100;
 /// Maximum number of identification rows. Strong evidence is a few nats, and an effect that a tenth of these rows do not show is
@@ -21,6 +21,11 @@ const MOST_HELD_OUT_ROWS: usize = 6000;
 
 /// Largest plausible command latency, ms.
 const LONGEST_LATENCY_MS: f64 = 800.0;
+
+/// Returns whether a block is held out, where there are enough of them and not too many rows.
+pub fn is_held_out(block: usize) -> bool {
+    block % EVERY == EVERY - 1
+}
 
 /// The rows of logs in two parts.
 pub struct Parts {
@@ -39,10 +44,14 @@ pub struct Split<'a> {
 }
 
 impl Parts {
-    /// Holds out every fourth block, and more if there are many rows.
+    /// Holds out every fourth session where there are four, otherwise every fourth block, and more if there are many rows.
     pub fn of(logs: &Logs, baseline: &Baseline) -> Self {
         let all = Observations::of(logs, baseline.motion.as_ref(), baseline.sonar.as_ref());
         let all = all.recalling(baseline.familiar);
+        if let Some(roles) = roles_by_session(logs, &all) {
+            let [identification, hold_out] = all.split(&roles).map(|part| weighted(part, baseline));
+            return Parts { identification, hold_out: Some(hold_out) };
+        }
         let (rows, blocks) = (all.rows.len(), all.blocks);
         if logs.runs.len() < FEWEST_RUNS && rows < AS_A_RUN * blocks {
             return Parts { identification: weighted(all, baseline), hold_out: None };
@@ -52,9 +61,9 @@ impl Parts {
         let usual = (EVERY - 1) as f64 / EVERY as f64;
         // As a fraction of the blocks that do not identify.
         let (held_out, mut others) = (held_out / (1.0 - identifying).max(0.0), 0);
-        let is_held_out = |block| {
+        let role = |block| {
             if identifying >= usual {
-                return Some(block % EVERY == EVERY - 1);
+                return Some(is_held_out(block));
             }
             if is_among(block, identifying) {
                 return Some(false);
@@ -62,7 +71,7 @@ impl Parts {
             others += 1;
             is_among(others - 1, held_out).then_some(true)
         };
-        let roles: Vec<Option<bool>> = (0..blocks).map(is_held_out).collect();
+        let roles: Vec<Option<bool>> = (0..blocks).map(role).collect();
         let [identification, hold_out] = all.split(&roles).map(|part| weighted(part, baseline));
         Parts { identification, hold_out: Some(hold_out) }
     }
@@ -104,6 +113,33 @@ pub fn step_ms(own_ms: f64) -> f64 {
     own_ms * (least_ms / own_ms).ceil().max(1.0)
 }
 
+/// Returns the role of every block where every fourth session is held out, or `None` if there are too few sessions for it. Of too
+/// many rows, evenly spaced blocks are used.
+fn roles_by_session(logs: &Logs, all: &Observations) -> Option<Vec<Option<bool>>> {
+    let mut sessions: Vec<&str> = logs.runs.iter().map(Run::session).collect();
+    sessions.dedup();
+    if sessions.len() < EVERY {
+        return None;
+    }
+    let session = |run: usize| sessions.iter().position(|session| *session == logs.runs[run].session());
+    let mut held_out = vec![None; all.blocks];
+    let mut rows = [0; 2];
+    for row in &all.rows {
+        let is_held_out = session(row.run).is_some_and(is_held_out);
+        held_out[row.block] = Some(is_held_out);
+        rows[usize::from(is_held_out)] += 1;
+    }
+    let used = [MOST_IDENTIFICATION_ROWS, MOST_HELD_OUT_ROWS].map(|most| most as f64);
+    let mut seen = [0; 2];
+    let role = |held_out: &Option<bool>| {
+        let part = usize::from((*held_out)?);
+        seen[part] += 1;
+        is_among(seen[part] - 1, used[part] / rows[part] as f64).then_some(part == 1)
+    };
+    // Nothing is held out if a session that would be has no tracked row.
+    (rows[0] > 0 && rows[1] > 0).then(|| held_out.iter().map(role).collect())
+}
+
 /// Returns whether a number belongs to an evenly spaced fraction of all numbers.
 fn is_among(number: usize, fraction: f64) -> bool {
     let fraction = fraction.min(1.0);
@@ -138,6 +174,27 @@ mod tests {
     fn every_fourth_run_is_held_out() {
         assert_eq!(runs_of_parts(9), (vec![0, 1, 2, 4, 5, 6, 8], Some(vec![3, 7])));
         assert_eq!(runs_of_parts(8).1, Some(vec![3, 7]));
+    }
+
+    /// Of five sessions the fourth is held out as a whole; three are too few for it.
+    #[test]
+    fn every_fourth_session_is_held_out() {
+        let sessions_of_parts = |sessions: usize| {
+            let mut logs = driven(3 * sessions, 40, |_, _| [50.0; 2]);
+            for (run, logged) in logs.runs.iter_mut().enumerate() {
+                logged.name = format!("day-{}/{}", run / 3, logged.name);
+                logged.rows.edit_each(|row| row.left = (run / 3) as f64);
+            }
+            let Parts { identification, hold_out } = Parts::of(&logs, &baseline());
+            [Some(identification), hold_out].map(|part| {
+                let rows = part.map_or_else(Vec::new, |part| part.rows);
+                let mut sessions: Vec<usize> = rows.iter().map(|row| row.context.commands[0][0] as usize).collect();
+                sessions.dedup();
+                sessions
+            })
+        };
+        assert_eq!(sessions_of_parts(5), [vec![0, 1, 2, 4], vec![3]]);
+        assert_eq!(sessions_of_parts(3), [vec![0, 1, 2], vec![1, 2]], "by runs");
     }
 
     #[test]

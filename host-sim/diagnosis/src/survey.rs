@@ -5,14 +5,16 @@
 //! of their training, and effects by what a diagnosis against the textbook could see of them.
 
 mod advice;
+mod further;
 mod holdings;
 
 use schemars::JsonSchema;
 use serde::Serialize;
 
-pub use holdings::{Holdings, Range};
+pub use holdings::{Heard, Holdings, Range, Witness};
 
-use crate::diagnose::{Excitation, excitation};
+use crate::diagnose::{Prospect, prospect};
+use crate::method::Method;
 use crate::split;
 use mindgap_foundations::error::{Error, Result};
 use mindgap_foundations::schema_number::SchemaNumber;
@@ -29,37 +31,49 @@ pub struct Survey {
     schema: SchemaNumber<1>,
     /// Contents of the logs after correction.
     pub holds: Holdings,
-    /// What is wrong with them.
+    /// Defects of the logs.
     pub findings: Vec<Finding>,
-    /// Why nothing is learned from them as they are, where that is so.
+    /// Why `train`, `evaluate` and `crosscheck` refuse these logs; null if they do not.
     pub refused: Option<String>,
-    /// The networks that could not be trained on them.
+    /// Networks that cannot be trained on these logs.
     pub missing_networks: Vec<Missing>,
-    /// The effects that they could not show against the textbook.
+    /// Effects that a diagnosis against `kinematic` could not show.
     pub untestable: Vec<&'static str>,
-    /// What is missing, a sentence each.
+    /// What the logs lack, one sentence each.
     pub drive_more: Vec<String>,
 }
 
 impl Survey {
     /// Surveys logs.
     pub fn of(logs: Logs) -> Self {
+        let heard = if logs.sensors().are_several() { logs.by_sensor() } else { Vec::new() };
+        let mut survey = Survey::of_first(logs);
+        if let Some(first) = heard.first() {
+            further::name_first(&mut survey, &first.sensor);
+        }
+        heard.into_iter().skip(1).for_each(|heard| further::add(&mut survey, heard));
+        survey
+    }
+
+    /// Surveys logs as the first range sensor heard them.
+    fn of_first(logs: Logs) -> Self {
         let mut inspected = Inspection::new(logs);
         let refused = inspected.refusal().map(str::to_owned);
         let enough = enough_of(&inspected.logs);
         let missing_networks = train::unsupported(&enough);
         let coarse = in_steps_that_motion_shows_in(&inspected.logs);
-        let holds = Holdings::of(&inspected.logs, coarse.as_ref().unwrap_or(&inspected.logs));
+        let mut holds = Holdings::of(&inspected.logs, coarse.as_ref().unwrap_or(&inspected.logs));
         let mut drive_more = advice::advice(&inspected.logs, &holds);
         inspected.logs = coarse.map_or(enough, |coarse| enough_of(&coarse));
-        let untestable = match shown(&inspected) {
-            Ok(Excitation { untestable, notes }) => {
+        let untestable;
+        (untestable, holds.detectable) = match shown(&inspected) {
+            Ok(Prospect { untestable, detectable, notes }) => {
                 drive_more.extend(notes);
-                untestable
+                (untestable, detectable)
             }
             Err(why) => {
                 drive_more.push(format!("No effect can be identified: {why}"));
-                CATALOGUE.iter().map(|effect| effect.id).collect()
+                (CATALOGUE.iter().map(|effect| effect.id).collect(), Vec::new())
             }
         };
         let findings = inspected.findings;
@@ -80,18 +94,17 @@ fn enough_of(logs: &Logs) -> Logs {
     }
     let every = rows.div_ceil(ENOUGH_ROWS).min(logs.runs.len() / ENOUGH_RUNS).max(1);
     let most = (ENOUGH_ROWS / logs.runs.len().div_ceil(every)).max(2);
-    let begin =
-        |run: &Run| Run { name: run.name.clone(), rows: run.rows.between(0..most.min(run.rows.len())).collect() };
+    let begin = |run: &Run| Run { name: run.name.clone(), rows: run.rows.beginning(most) };
     let runs = logs.runs.iter().step_by(every).map(begin).collect();
     Logs { robot: logs.robot, scene: logs.scene.clone(), runs }
 }
 
 /// What a diagnosis against the textbook could show.
-fn shown(inspected: &Inspection) -> Result<Excitation> {
+fn shown(inspected: &Inspection) -> Result<Prospect> {
     if inspected.logs.runs.is_empty() {
         return Err(Error::new(format!("no run is as long as a step of {} ms.", inspected.logs.robot.step_ms)));
     }
-    excitation(kinematic::baseline(&inspected.logs), inspected)
+    prospect(kinematic::baseline(&inspected.logs), inspected, Method::default())
 }
 
 /// Logs in the steps that a diagnosis compares, where those are longer.

@@ -110,6 +110,8 @@ pub fn observations(blocks: usize, rows: usize, made: impl Fn(usize, usize) -> M
             context,
             following_steps: Vec::new(),
             motion: Some(motion),
+            wheels_cm: None,
+            gyro_rad: None,
             speeds: StepSpeeds { now, before, drift_cm: 0.0 },
             expected: Some(drive.step(now, before)),
             echo_cm: echo_off_cm.zip(context.faced).map(|(off_cm, [distance_cm, _])| distance_cm + off_cm),
@@ -263,7 +265,8 @@ pub const CALIBRATION: Calibration = Calibration {
 };
 
 /// The method with [`CATALOGUE`] and [`CALIBRATION`].
-pub const METHOD: Method = Method { catalogue: CATALOGUE, calibration: CALIBRATION, seed: 1 };
+pub const METHOD: Method =
+    Method { catalogue: CATALOGUE, place: None, calibration: CALIBRATION, seed: 1, is_driving: false };
 
 /// Returns the first variant of an effect.
 pub fn candidate(effect: &'static Effect) -> Candidate {
@@ -275,14 +278,16 @@ pub fn made_up(effects: &[&'static Effect], values: &[f64], by_block: &[f64], co
     let candidates = effects.iter().map(|effect| candidate(effect)).collect();
     let mut column = vec![0.0; context.rows.rows.len()];
     by_block.iter().enumerate().for_each(|(block, nats)| column[context.rows.of_block(block).start] = *nats);
+    let hypothesis = Hypothesis::null(context.baseline()).of(candidates);
     Fitted {
-        hypothesis: Hypothesis::null(context.baseline()).of(candidates),
+        witnesses: hypothesis.witnesses(context.rows, values).0,
+        hypothesis,
         values: values.to_vec(),
         errors: vec![0.0; values.len()],
         noise: NOISE,
         scores: Scores::zero(context.rows.row_blocks()),
         cross_validated: context.rows.scores_of(Channel::Forward, &column),
-        complexity_penalty: 0.0,
+        complexity_penalties: [0.0; 2],
     }
 }
 

@@ -2,14 +2,15 @@
 
 use glam::DVec2;
 
+use super::channel::Channel;
 use super::scope::Scope;
 use mindgap_foundations::error::{Error, Result};
 use mindgap_foundations::geometry::wrap_rad;
 use mindgap_foundations::statistics::summary::median;
-use mindgap_learning::evaluation::observations::{Observation, Observations};
-use mindgap_logs::Run;
+use mindgap_learning::evaluation::observations::{Observation, Observations, is_untracked};
 use mindgap_logs::inspection::{Inspection, Part};
-use mindgap_models::simulator::baseline::Baseline;
+use mindgap_logs::{Logs, Run};
+use mindgap_models::simulator::baseline::{Baseline, MotionModel};
 
 /// Largest position noise of a standing robot; a camera's marker scatters by one or two centimetres.
 const STANDING_CM: f64 = 4.0;
@@ -17,6 +18,8 @@ const STANDING_CM: f64 = 4.0;
 const STANDING_RAD: f64 = 0.26;
 /// A robot moved if at least this fraction of a run's poses lies beyond that noise; jumps of the tracker are fewer.
 const MOVED: f64 = 0.1;
+
+const UNTRACKED: &str = "The robot was not tracked: of its motion only what it measures itself is compared.";
 
 /// What a diagnosis can compare.
 pub struct Validated {
@@ -40,6 +43,9 @@ pub fn validate(baseline: &mut Baseline, observations: &Observations, inspected:
     if let Some(why) = inspected.withheld(Part::Motion) {
         reasons.push((Part::Motion, why.to_owned()));
         baseline.motion = None;
+    } else if is_untracked(logs) && is_commanded(observations) && is_witnessed(baseline, observations) {
+        notes.push(UNTRACKED.into());
+        reasons.push((Part::Motion, UNTRACKED.into()));
     } else if let Some(why) = without_motion(baseline, observations) {
         notes.push(why.to_owned());
         reasons.push((Part::Motion, why.to_owned()));
@@ -51,7 +57,7 @@ pub fn validate(baseline: &mut Baseline, observations: &Observations, inspected:
     if let Some(why) = inspected.withheld(Part::Sonar) {
         reasons.push((Part::Sonar, why.to_owned()));
         baseline.sonar = None;
-    } else if let Some(why) = without_sonar(baseline, observations) {
+    } else if let Some(why) = without_sonar(baseline, observations, logs) {
         notes.push(why.to_owned());
         reasons.push((Part::Sonar, why.to_owned()));
         baseline.sonar = None;
@@ -73,7 +79,28 @@ pub fn validate(baseline: &mut Baseline, observations: &Observations, inspected:
         );
     }
     let moved_uncommanded = knows_motion && !is_commanded(observations) && moves(observations);
-    Ok(Validated { notes, scope: Scope::without(&reasons), moved_uncommanded })
+    let is_compared = baseline.motion.is_some();
+    let knows = |channel| knows_witness(baseline, channel);
+    let scope = Scope::without(&reasons).with_witnesses(&witnesses(observations), is_compared, knows);
+    Ok(Validated { notes, scope, moved_uncommanded })
+}
+
+/// Returns whether a witness was logged that the baseline knows.
+fn is_witnessed(baseline: &Baseline, observations: &Observations) -> bool {
+    witnesses(observations).into_iter().any(|channel| knows_witness(baseline, channel))
+}
+
+fn knows_witness(baseline: &Baseline, channel: Channel) -> bool {
+    let knows = |motion: &MotionModel| channel == Channel::Gyro || motion.knows_wheels();
+    baseline.motion.as_ref().is_some_and(knows)
+}
+
+/// Returns the witnesses that were logged.
+fn witnesses(observations: &Observations) -> Vec<Channel> {
+    let has_counters = observations.rows.iter().any(|row| row.wheels_cm.is_some());
+    let has_gyro = observations.rows.iter().any(|row| row.gyro_rad.is_some());
+    let is_logged = |channel: &Channel| if *channel == Channel::Gyro { has_gyro } else { has_counters };
+    Channel::WITNESSES.into_iter().filter(is_logged).collect()
 }
 
 /// Returns why motion cannot be compared, if it cannot.
@@ -115,9 +142,11 @@ fn moves(observations: &Observations) -> bool {
 }
 
 /// Returns why the sensor cannot be compared, if it cannot.
-fn without_sonar(baseline: &Baseline, observations: &Observations) -> Option<&'static str> {
+fn without_sonar(baseline: &Baseline, observations: &Observations, logs: &Logs) -> Option<&'static str> {
+    if is_untracked(logs) {
+        Some("The robot was not tracked, so that nobody knows what its sensor faced: the sonar is not compared.")
     // The textbook's sensor is fitted to the readings themselves.
-    if observations.rows.iter().all(|row| row.echo_cm.is_none()) {
+    } else if observations.rows.iter().all(|row| row.echo_cm.is_none()) {
         Some("There are no readings: the sonar is not compared.")
     } else if baseline.sonar.is_none() {
         Some(
@@ -138,7 +167,6 @@ mod tests {
     use crate::channel::Channel;
     use crate::test_support::{alternating, baseline, baseline_with_sonar, driven};
     use mindgap_foundations::geometry::Pose;
-    use mindgap_logs::Logs;
 
     /// Returns commands that differ from run to run.
     fn mixed(run: usize, at: usize) -> [f64; 2] {
@@ -182,6 +210,29 @@ mod tests {
 
         let (notes, baseline) = notes_of(&driven(8, 4, |_, _| [0.0; 2]));
         assert!(notes[0].starts_with("The motors stand still") && baseline.motion.is_none(), "{notes:?}");
+    }
+
+    #[test]
+    fn of_an_untracked_robot_its_own_measurements_are_compared() {
+        let untracked = |counts: bool| {
+            let mut logs = driven(8, 4, mixed);
+            for row in logs.runs.iter_mut().map(|run| &mut run.rows) {
+                row.edit_each(|row| {
+                    row.pose = None;
+                    let counted = counts.then_some(row.t_ms);
+                    (row.rot_left_deg, row.rot_right_deg) = (counted, counted);
+                });
+            }
+            let inspected = Inspection { logs, findings: Vec::new() };
+            let mut baseline = baseline_with_sonar();
+            let rows = Observations::of(&inspected.logs, baseline.motion.as_ref(), baseline.sonar.as_ref());
+            validate(&mut baseline, &rows, &inspected)
+        };
+        let Validated { notes, scope, .. } = untracked(true).expect("counters");
+        assert!(notes[0].starts_with("The robot was not tracked: of its motion only"), "{notes:?}");
+        assert_eq!(scope.compared, [Channel::RotLeft, Channel::RotRight]);
+        assert_eq!(scope.not_compared.len(), 5);
+        assert!(untracked(false).is_err());
     }
 
     /// Returns whether a robot with zero commands moved, for runs of twenty rows with changed poses.

@@ -15,6 +15,7 @@ use mindgap_diagnosis::Diagnosis;
 use mindgap_diagnosis::account::GapReduction;
 use mindgap_diagnosis::budget::{Part, SCATTER, UNEXPLAINED};
 use mindgap_diagnosis::explain::profile::{Bin, ResidualProfile};
+use mindgap_diagnosis::scope::of_sensor;
 use mindgap_files as files;
 use mindgap_foundations::error::Result;
 use mindgap_foundations::geometry::Pose;
@@ -146,7 +147,7 @@ pub fn figures_of_diagnosis(diagnosis: &Diagnosis) -> Vec<NamedFigure> {
     let mut figures = Vec::new();
     if !diagnosis.budget.is_empty() {
         let title = "What the gap is made of".into();
-        let budget = ShareChart { title, ..budget(diagnosis, |id| id) };
+        let budget = ShareChart { title, ..budget(diagnosis, |part| of_sensor(&part.id, part.sensor.as_deref())) };
         figures.push(named("budget", budget.draw()));
     }
     if let Some(reduction) = diagnosis.reduction.as_ref().filter(|reduction| !reduction.paths.is_empty()) {
@@ -154,7 +155,7 @@ pub fn figures_of_diagnosis(diagnosis: &Diagnosis) -> Vec<NamedFigure> {
         figures.push(named("path-ends", CurveChart { title, ..path_ends(reduction) }.draw()));
     }
     figures.extend(diagnosis.profiles.iter().map(|profile| {
-        let ResidualProfile { channel, depends_on, unit, bins } = profile;
+        let ResidualProfile { channel, depends_on, unit, bins, .. } = profile;
         let title = format!("{} by {depends_on}", channel.name());
         let chart = residuals(depends_on, unit, &[("remaining residual, 95 %", bins)]);
         named(&format!("unexplained-{}", channel.name().replace('_', "-")), CurveChart { title, ..chart }.draw())
@@ -163,12 +164,12 @@ pub fn figures_of_diagnosis(diagnosis: &Diagnosis) -> Vec<NamedFigure> {
 }
 
 /// The parts of a gap, effects first and the largest of them at the top, with names from their ids.
-pub fn budget<'a>(diagnosis: &'a Diagnosis, name: impl Fn(&'a str) -> &'a str) -> ShareChart {
+pub fn budget(diagnosis: &Diagnosis, name: impl Fn(&Part) -> String) -> ShareChart {
     let mut parts: Vec<&Part> = diagnosis.budget.iter().collect();
     let effects = parts.partition_point(|part| part.id != SCATTER && part.id != UNEXPLAINED);
     parts[..effects].sort_by(|a, b| b.share.total_cmp(&a.share));
-    let row = |part: &&'a Part| Share {
-        name: name(&part.id).into(),
+    let row = |part: &&Part| Share {
+        name: name(part),
         share: part.share,
         interval: part.ci95,
         colour: match part.id.as_str() {

@@ -23,6 +23,8 @@ pub mod svg;
 mod glyph;
 mod legend;
 mod output;
+#[cfg(not(target_family = "wasm"))]
+mod png;
 mod projection;
 mod scale;
 mod trend;

@@ -1,16 +1,18 @@
 //! Reads and writes whole files: read errors name file and line, and writes never leave a partial file.
 
+mod input;
+mod lock;
 mod parser_messages;
 pub mod places;
 mod records;
+pub mod source;
 mod staging;
 mod stale_temp;
 mod temporary;
 mod text;
 mod write;
 
-use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use csv::{ReaderBuilder, StringRecord};
 use jiff::Timestamp;
@@ -19,10 +21,13 @@ use jiff::tz::TimeZone;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
+pub use input::{absolute, in_folder, open, read_bytes, unreadable};
+pub use lock::lock_folder;
 pub use parser_messages::did_you_mean;
 pub use records::Records;
+pub use staging::StagingFolder;
 pub use stale_temp::remove_own as remove_temporary;
-pub use text::{NOT_UTF8, TextFile, line_at, read_text};
+pub use text::{NOT_UTF8, TextFile, decoded, line_at, read_raw_text, read_text};
 pub use write::{disable_writing, is_stream, make_folder, reason, to_standard_output, write, write_folder};
 
 use mindgap_foundations::error::{Error, Result};
@@ -101,18 +106,19 @@ pub fn json(path: &Path, value: &impl Serialize) -> Result<String> {
     Ok(text + "\n")
 }
 
-/// Returns the first and last day (UTC) on which the CSV files of a folder were modified, or `None` if the file system does
-/// not say.
+/// Returns the first and last day (UTC) on which the CSV files of folders were modified, or `None` if the file system does not
+/// say.
 ///
 /// # Errors
-/// When the folder cannot be read.
-pub fn days_written(folder: &Path) -> Result<Option<[String; 2]>> {
-    let listing = fs::read_dir(folder).map_err(|e| Error::in_file(folder, format!("cannot be read: {e}")))?;
-    let days = listing.filter_map(|entry| {
-        let entry = entry.ok().filter(|entry| entry.path().extension().is_some_and(|ending| ending == "csv"))?;
-        let time = entry.metadata().ok()?.modified().ok()?;
-        Some(Timestamp::try_from(time).ok()?.to_zoned(TimeZone::UTC).date())
-    });
-    let days: Vec<Date> = days.collect();
+/// When a folder cannot be read.
+pub fn days_written(folders: &[PathBuf]) -> Result<Option<[String; 2]>> {
+    let mut days: Vec<Date> = Vec::new();
+    for folder in folders {
+        let names = source::names(folder).map_err(|e| unreadable(folder, &e))?;
+        days.extend(names.iter().map(|name| folder.join(name)).filter_map(|path| {
+            let time = path.extension().filter(|ending| *ending == "csv").and_then(|_| source::modified(&path))?;
+            Some(Timestamp::try_from(time).ok()?.to_zoned(TimeZone::UTC).date())
+        }));
+    }
     Ok(days.iter().min().zip(days.iter().max()).map(|(first, last)| [first, last].map(Date::to_string)))
 }

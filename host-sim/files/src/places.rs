@@ -4,7 +4,9 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use super::input::read_bytes;
 use super::stale_temp;
+use super::text::MAX_BYTES;
 use super::write::{behind_links, folder_of, is_standard_output, is_stream, missing_folder, reason, try_folder};
 use mindgap_foundations::error::{Error, Result};
 
@@ -147,7 +149,7 @@ impl Output {
                 if fs::metadata(path).map_err(read)?.permissions().readonly() {
                     return refused("already exists and is read-only");
                 }
-                let content = fs::read(path).map_err(read)?;
+                let content = read_bytes(path, MAX_BYTES)?;
                 // An empty file holds nothing to lose.
                 if content.is_empty() || (kind.is_own)(&content) {
                     return Ok(());

@@ -8,6 +8,9 @@ use csv::{ReaderBuilder, StringRecord};
 use super::NOT_UTF8;
 use mindgap_foundations::error::{Error, Result};
 
+/// Longest line, so that a file without line ends is refused before it fills memory.
+const MAX_LINE_BYTES: usize = 1 << 20;
+
 /// The records of a CSV file.
 pub struct Records<R> {
     path: PathBuf,
@@ -22,7 +25,7 @@ impl<R: Read> Records<R> {
 
     /// Reads with other settings.
     pub fn with(path: &Path, text: R, settings: &ReaderBuilder) -> Self {
-        Records { path: path.into(), reader: settings.from_reader(LineEnds { text, last: None }) }
+        Records { path: path.into(), reader: settings.from_reader(LineEnds { text, last: None, line_bytes: 0 }) }
     }
 
     /// Returns the header.
@@ -62,7 +65,7 @@ impl<R: Read> Records<R> {
             csv::ErrorKind::Utf8 { .. } => NOT_UTF8.into(),
             _ => e.to_string().replace('\n', " "),
         };
-        Error::at_line(&self.path, self.line(), what)
+        Error::at_line(&self.path, self.line().max(1), what)
     }
 }
 
@@ -71,6 +74,8 @@ impl<R: Read> Records<R> {
 struct LineEnds<R> {
     text: R,
     last: Option<u8>,
+    /// Length of the present line so far.
+    line_bytes: usize,
 }
 
 impl<R: Read> Read for LineEnds<R> {
@@ -83,12 +88,16 @@ impl<R: Read> Read for LineEnds<R> {
             let mut kept = 0;
             for at in 0..count {
                 let byte = buffer[at];
+                self.line_bytes = if matches!(byte, b'\n' | b'\r') { 0 } else { self.line_bytes + 1 };
                 let is_second_of_pair = byte == b'\n' && self.last == Some(b'\r');
                 self.last = Some(byte);
                 if !is_second_of_pair {
                     buffer[kept] = if byte == b'\r' { b'\n' } else { byte };
                     kept += 1;
                 }
+            }
+            if self.line_bytes > MAX_LINE_BYTES {
+                return Err(io::Error::other("a line of more than 1 MB: not a table"));
             }
             if kept > 0 {
                 return Ok(kept);
@@ -153,6 +162,13 @@ mod tests {
     }
 
     #[test]
+    fn a_line_without_end_is_refused() {
+        let mut records = Records::new(Path::new("a.csv"), io::repeat(b'1'));
+        let why = records.header().expect_err("no end").to_string();
+        assert!(why.ends_with("a line of more than 1 MB: not a table"), "{why}");
+    }
+
+    #[test]
     fn line_ends_may_be_split_between_reads() {
         /// Returns one byte at a time.
         struct Drip<'a>(&'a [u8]);
@@ -165,7 +181,7 @@ mod tests {
             }
         }
         let mut text = String::new();
-        let mut ends = LineEnds { text: Drip(b"a\r\n\r\nb\rc\n\n\rd"), last: None };
+        let mut ends = LineEnds { text: Drip(b"a\r\n\r\nb\rc\n\n\rd"), last: None, line_bytes: 0 };
         ends.read_to_string(&mut text).expect("text");
         assert_eq!(text, "a\n\nb\nc\n\n\nd\n");
     }

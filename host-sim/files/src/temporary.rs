@@ -46,11 +46,7 @@ impl TemporaryFile {
         let mut names = in_use();
         loop {
             let mut builder = builder();
-            #[cfg(unix)]
-            {
-                use std::os::unix::fs::PermissionsExt;
-                builder.permissions(fs::Permissions::from_mode(0o666));
-            }
+            permit(&mut builder);
             let file = builder.tempfile_in(folder)?;
             if lock_new(file.as_file(), file.path()) {
                 names.insert(file.path().to_owned());
@@ -93,6 +89,16 @@ pub fn builder() -> Builder<'static, 'static> {
     builder.prefix(PREFIX).suffix(SUFFIX).rand_bytes(RANDOM);
     builder
 }
+
+/// Gives a file the permissions of any new file.
+#[cfg(unix)]
+fn permit(builder: &mut Builder) {
+    use std::os::unix::fs::PermissionsExt;
+    builder.permissions(fs::Permissions::from_mode(0o666));
+}
+
+#[cfg(not(unix))]
+fn permit(_: &mut Builder) {}
 
 /// Returns whether a path has a temporary name.
 pub fn is_temporary(path: &Path) -> bool {

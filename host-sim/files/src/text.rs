@@ -1,14 +1,18 @@
 //! Reads text as editors and spreadsheets save it: other encodings than UTF-8 are rejected, a byte-order mark is skipped.
 
-use std::fs::File;
 use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
 
+use super::input;
+use super::source::File;
 use mindgap_foundations::error::{Error, Result};
 
 const UTF8_BOM: &[u8] = b"\xEF\xBB\xBF";
 /// Byte-order marks of UTF-16, little and big endian.
 const UTF16_BOMS: [&[u8]; 2] = [b"\xFF\xFE", b"\xFE\xFF"];
+
+/// Largest file that is read as a whole.
+pub const MAX_BYTES: u64 = 256 << 20;
 
 /// A text file that is read in pieces.
 pub struct TextFile {
@@ -25,9 +29,8 @@ impl TextFile {
     /// # Errors
     /// When it cannot be opened, or is UTF-16.
     pub fn open(path: &Path) -> Result<Self> {
-        let failed = |e: std::io::Error| Error::in_file(path, format!("cannot be read: {e}"));
-        let mut reader = BufReader::with_capacity(1 << 16, File::open(path).map_err(failed)?);
-        let start = reader.fill_buf().map_err(failed)?;
+        let mut reader = BufReader::with_capacity(1 << 16, input::open(path)?);
+        let start = reader.fill_buf().map_err(|e| input::unreadable(path, &e))?;
         if is_utf16(start) {
             return Err(Error::in_file(path, "is UTF-16, which Windows programs call \"Unicode\": save it as UTF-8"));
         }
@@ -47,14 +50,32 @@ impl Read for TextFile {
     }
 }
 
-/// Reads a text file.
+/// Reads a text file with all its bytes, a byte-order mark included, so that it can be written back.
 ///
 /// # Errors
-/// When the file is missing, unreadable or not UTF-8.
+/// As [`read_text`].
+pub fn read_raw_text(path: &Path) -> Result<String> {
+    let file = TextFile::open(path)?;
+    let mark = if file.had_bom { "\u{feff}" } else { "" };
+    Ok(mark.to_owned() + &decoded(path, input::read_at_most(path, file, MAX_BYTES)?)?)
+}
+
+/// Reads a text file of at most 256 MB.
+///
+/// # Errors
+/// When the file is missing, unreadable, larger or not UTF-8.
 pub fn read_text(path: &Path) -> Result<String> {
-    let mut bytes = Vec::new();
-    let read = TextFile::open(path)?.read_to_end(&mut bytes);
-    read.map_err(|e| Error::in_file(path, format!("cannot be read: {e}")))?;
+    decoded(path, input::read_at_most(path, TextFile::open(path)?, MAX_BYTES)?)
+}
+
+/// Returns the text of a file's bytes without a byte-order mark.
+///
+/// # Errors
+/// When they are not UTF-8.
+pub fn decoded(path: &Path, mut bytes: Vec<u8>) -> Result<String> {
+    if bytes.starts_with(UTF8_BOM) {
+        bytes.drain(..UTF8_BOM.len());
+    }
     String::from_utf8(bytes).map_err(|e| {
         let valid = e.utf8_error().valid_up_to();
         Error::at_line(path, line_at(e.as_bytes(), valid), NOT_UTF8)

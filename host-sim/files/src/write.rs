@@ -13,7 +13,7 @@ use mindgap_foundations::error::{Error, Result};
 /// Paths that mean standard output.
 const STANDARD_OUTPUT: [&str; 2] = ["-", "/dev/stdout"];
 /// Folders of a process's open files: files there are written in place.
-const OPEN_FILES: [&str; 4] = ["/dev/stdout", "/dev/stderr", "/dev/fd", "/proc/self/fd"];
+const OPEN_FILES: [&str; 5] = ["/dev/stdin", "/dev/stdout", "/dev/stderr", "/dev/fd", "/proc/self/fd"];
 /// Maximum number of links to follow, as on Linux.
 const MOST_LINKS: usize = 40;
 
@@ -25,6 +25,11 @@ pub fn disable_writing() {
     IS_DISABLED.store(true, Ordering::Relaxed);
 }
 
+/// Returns whether this process writes outputs.
+pub fn is_writing() -> bool {
+    !IS_DISABLED.load(Ordering::Relaxed)
+}
+
 /// Returns whether a path means standard output.
 pub fn is_standard_output(path: &Path) -> bool {
     STANDARD_OUTPUT.iter().any(|name| path.as_os_str() == *name)
@@ -32,8 +37,12 @@ pub fn is_standard_output(path: &Path) -> bool {
 
 /// Returns whether a path is a stream: a pipe, a terminal, a device, a file that is already open.
 pub fn is_stream(path: &Path) -> bool {
-    let is_open = OPEN_FILES.iter().any(|open| path.starts_with(open));
-    is_standard_output(path) || is_open || fs::metadata(path).is_ok_and(|it| !it.is_file() && !it.is_dir())
+    is_standard_output(path) || is_open_file(path) || fs::metadata(path).is_ok_and(|it| !it.is_file() && !it.is_dir())
+}
+
+/// Returns whether a path is a file that this process has open.
+pub fn is_open_file(path: &Path) -> bool {
+    OPEN_FILES.iter().any(|open| path.starts_with(open))
 }
 
 /// Writes a file under a temporary name next to `path`, then renames it. An existing file keeps its permissions, and a link to
@@ -43,7 +52,7 @@ pub fn is_stream(path: &Path) -> bool {
 /// When the folder is missing or not writable; `path` then stays as it was.
 pub fn write(path: &Path, content: impl AsRef<[u8]>) -> Result<()> {
     let content = content.as_ref();
-    let written = if IS_DISABLED.load(Ordering::Relaxed) {
+    let written = if !is_writing() {
         Ok(())
     } else if is_standard_output(path) {
         to_standard_output(content)
@@ -71,7 +80,7 @@ pub fn reason(e: &io::Error) -> String {
 
 /// Writes to standard output. A closed pipe is not an error.
 pub fn to_standard_output(content: &[u8]) -> io::Result<()> {
-    if IS_DISABLED.load(Ordering::Relaxed) {
+    if !is_writing() {
         return Ok(());
     }
     let mut out = io::stdout().lock();
@@ -86,7 +95,7 @@ pub fn to_standard_output(content: &[u8]) -> io::Result<()> {
 /// # Errors
 /// When it cannot be created.
 pub fn make_folder(path: &Path) -> Result<()> {
-    if IS_DISABLED.load(Ordering::Relaxed) {
+    if !is_writing() {
         return Ok(());
     }
     fs::create_dir_all(path).map_err(|e| Error::in_file(path, format!("cannot be created: {e}")))?;
@@ -101,7 +110,7 @@ pub fn make_folder(path: &Path) -> Result<()> {
 /// # Errors
 /// What `fill` returns, or when the folder cannot be written.
 pub fn write_folder<T>(path: &Path, is_own: impl Fn(&str) -> bool, fill: impl FnOnce(&Path) -> Result<T>) -> Result<T> {
-    if IS_DISABLED.load(Ordering::Relaxed) {
+    if !is_writing() {
         return fill(path);
     }
     let failed = |e: io::Error| Error::in_file(path, format!("cannot be written: {}", reason(&e)));

@@ -3,20 +3,28 @@
 
 mod clock;
 mod frame;
+mod pauses;
 mod rows;
+mod sensors;
 
 use std::ops::Range;
+use std::sync::Arc;
 
-use self::frame::correct_frame;
+use self::frame::{correct_frame, unmirror};
+pub use self::pauses::Watchdog;
 use self::rows::{Prepared, spacing_ms};
 use super::clocks::Clocks;
 use super::draft::{Measure, RobotDraft};
+use super::left_out::LeftOut;
 use super::recording::{Kind, Recording};
-use super::report::{RecordingReport, RecordingsReport};
+use super::report::{RecordingReport, RecordingsReport, SensorReport};
+use super::rotation;
 use super::scale_check::ScaleCheck;
 use mindgap_foundations::counter::Counter;
 use mindgap_foundations::error::{Error, Result};
-use mindgap_logs::inspection::Inspection;
+use mindgap_logs::heard::Heard;
+use mindgap_logs::inspection::{Finding, Inspection, Part};
+use mindgap_logs::range_sensor::{RangeSensor, Sensors};
 use mindgap_logs::{Logs, Robot, Run, Scene};
 
 /// Plausible range of fitted robot dimensions and speeds, cm or cm/s.
@@ -32,18 +40,31 @@ pub struct Assembled {
     pub report: RecordingsReport,
 }
 
-/// Assembles at least one recording. Without a `robot`, its dimensions are fitted where possible and reported. `watch` receives
-/// the number of recordings aligned so far and their total.
+/// What the user states about the clocks and the base of recordings.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Stated {
+    /// Lead of the poses' clock, ms.
+    pub offset_ms: Option<f64>,
+    /// What the base does without commands; inferred from the motion if `None`.
+    pub watchdog: Option<Watchdog>,
+}
+
+/// Assembles at least one recording. Without a `robot` and its range sensors, its dimensions are fitted where possible and
+/// reported. `watch` receives the number of recordings aligned so far and their total. A recording that cannot be used is left
+/// out, with its reason, as long as another remains.
 ///
 /// # Errors
-/// When streams have nothing in common, when units or frames are inconsistent, or when no rows remain.
+/// When no recording can be used, or when units or frames are inconsistent.
 pub fn assemble(
     mut recordings: Vec<Recording>,
-    robot: Option<Robot>,
+    robot: Option<(Robot, Sensors)>,
     scene: Scene,
-    offset_ms: Option<f64>,
+    stated: Stated,
     watch: impl Fn(usize, usize),
 ) -> Result<Assembled> {
+    recordings.iter_mut().for_each(Recording::correct_signs);
+    let (robot, sensors) = robot.unzip();
+    let (sensors, silent) = sensors::heard(&mut recordings, sensors.unwrap_or_default());
     let counter = Counter::new(
         recordings.len() * if robot.is_none() && !all_of(&recordings, Kind::Twist) { 2 } else { 1 },
         watch,
@@ -55,38 +76,63 @@ pub fn assemble(
     if robot.is_some_and(|robot| robot.ultrasonic.is_none()) {
         recordings.iter_mut().for_each(Recording::drop_readings);
     }
-    let stated_clocks = Clocks { offset_ms: offset_ms.unwrap_or(0.0), drift: 0.0 };
+    let stated_clocks = Clocks { offset_ms: stated.offset_ms.unwrap_or(0.0), drift: 0.0 };
     let mut runs = Vec::new();
     for recording in &recordings {
-        runs.extend(Prepared::of(recording, &first_guess)?.runs(&stated_clocks, &first_guess, runs.len()));
+        if let Ok(prepared) = Prepared::of(recording, &first_guess) {
+            runs.extend(prepared.runs(&stated_clocks, &first_guess, runs.len()));
+        }
     }
-    let frame = correct_frame(&mut recordings, &Logs { robot: first_guess, scene: scene.clone(), runs });
-    let draft = if robot.is_some() { None } else { Some(fitted(&recordings, offset_ms, &counter)?) };
+    let logs = Logs { robot: first_guess, scene: scene.clone(), runs };
+    let turned = correct_frame(&mut recordings, &logs);
+    let mirrored = unmirror(&mut recordings, &first_guess, &scene, stated)?;
+    let frame = turned.into_iter().chain(mirrored).collect::<Vec<_>>().join("; ");
+    let frame = Some(frame).filter(|description| !description.is_empty());
+    let draft = if robot.is_some() { None } else { Some(fitted(&recordings, stated, &counter)?) };
     let robot = draft.as_ref().map_or(Ok(first_guess), RobotDraft::robot)?;
-    let (mut runs, mut reports) = (Vec::new(), Vec::new());
+    let (mut runs, mut reports, mut left_out, mut error) = (Vec::new(), Vec::new(), Vec::new(), None);
     for recording in &recordings {
-        let (new_runs, report) = runs_of(recording, &robot, offset_ms, runs.len())?;
-        runs.extend(new_runs);
-        reports.push(report);
+        match runs_of(recording, &robot, &sensors, stated, runs.len()) {
+            Ok((new_runs, report)) => {
+                runs.extend(new_runs);
+                reports.push(report);
+            }
+            Err(e) => {
+                left_out.push(LeftOut::failed(&recording.track, &e));
+                error = error.or(Some(e));
+            }
+        }
         counter.increment();
+    }
+    if let (true, Some(error)) = (runs.is_empty(), error) {
+        return Err(error);
     }
     let logs = Logs { robot, scene, runs };
     let scale_check = ScaleCheck::of_commands(&logs.runs, &logs.robot);
     let inspected = Inspection::new(logs.clone());
     let mismatch = scale_check.refusal("the commands", "the track");
-    if let Some(why) = mismatch.or_else(|| inspected.refusal().map(str::to_owned)) {
+    if let Some(why) = mismatch.or_else(|| inspected.withheld(Part::Motion).map(str::to_owned)) {
         return Err(Error::in_file(&recordings[0].track, why));
     }
-    let findings = inspected.findings.iter().map(|found| found.line()).collect();
-    let report =
-        RecordingsReport { recordings: reports, odometry_check: scale_check, frame, findings, to_fill_in: Vec::new() };
+    let of_further = further_findings(&logs, &inspected.findings);
+    let findings = inspected.findings.iter().chain(&of_further).map(Finding::line).chain(silent).collect();
+    let unused = recordings.iter().flat_map(|r| &r.sources).flat_map(|source| &source.unused).cloned();
+    left_out.extend(unused);
+    let report = RecordingsReport {
+        recordings: reports,
+        odometry_check: scale_check,
+        frame,
+        findings,
+        to_fill_in: Vec::new(),
+        left_out,
+    };
     Ok(Assembled { logs, draft, report })
 }
 
 /// Returns a draft fast enough for all commands in the recordings.
 fn first_guess(recordings: &[Recording]) -> Result<RobotDraft> {
     let mut draft = RobotDraft::blank();
-    draft.has_sensor = Some(recordings.iter().any(|recording| recording.readings.is_some()));
+    draft.has_sensor = Some(recordings.iter().any(|recording| !recording.readings.is_empty()));
     let spacing_ms = recordings.iter().map(|r| spacing_ms(&r.poses.iter().flatten().copied().collect::<Vec<_>>()));
     let spacing_ms = spacing_ms.fold(0.0, f64::max);
     if spacing_ms > draft.step_ms.value {
@@ -98,11 +144,7 @@ fn first_guess(recordings: &[Recording]) -> Result<RobotDraft> {
 }
 
 /// Returns a draft with the dimensions that can be fitted to the recordings.
-fn fitted(
-    recordings: &[Recording],
-    offset_ms: Option<f64>,
-    counter: &Counter<impl Fn(usize, usize)>,
-) -> Result<RobotDraft> {
+fn fitted(recordings: &[Recording], stated: Stated, counter: &Counter<impl Fn(usize, usize)>) -> Result<RobotDraft> {
     let mut draft = first_guess(recordings)?;
     let robot = draft.robot()?;
     if all_of(recordings, Kind::Twist) {
@@ -111,7 +153,12 @@ fn fitted(
     } else {
         let mut runs = Vec::new();
         for recording in recordings {
-            runs.extend(runs_of(recording, &robot, offset_ms, runs.len())?.0);
+            match runs_of(recording, &robot, &Arc::default(), stated, runs.len()) {
+                Ok((new_runs, _)) => runs.extend(new_runs),
+                Err(error) if recordings.len() == 1 => return Err(error),
+                // It is left out later, with its reason.
+                Err(_) => {}
+            }
             counter.increment();
         }
         let scale_check = ScaleCheck::of_commands(&runs, &robot);
@@ -153,11 +200,18 @@ fn fastest_cm_s(recordings: &[Recording], robot: &Robot) -> f64 {
 fn runs_of(
     recording: &Recording,
     robot: &Robot,
-    offset_ms: Option<f64>,
+    sensors: &Arc<Sensors>,
+    stated: Stated,
     first: usize,
 ) -> Result<(Vec<Run>, RecordingReport)> {
-    let prepared = Prepared::of(recording, robot)?;
-    let (clocks, clocks_report) = clock::aligned(&prepared, robot, recording.has_one_clock, offset_ms)?;
+    if let Some(what) = rotation::missing(recording, robot) {
+        return Err(Error::in_file(&recording.track, what));
+    }
+    let mut prepared = Prepared::of(recording, robot)?;
+    prepared.check_motion()?;
+    let pauses = pauses::apply(&mut prepared, robot, recording.has_one_clock, stated);
+    let (clocks, clocks_report) = clock::aligned(&prepared, robot, recording.has_one_clock, stated.offset_ms)?;
+    prepared.sensors = Arc::clone(sensors);
     let runs = prepared.runs(&clocks, robot, first);
     if runs.is_empty() {
         let what = "has no period with both poses and commands that lasts a few steps";
@@ -171,10 +225,34 @@ fn runs_of(
         rows: rows().count(),
         without_pose: rows().filter(|row| row.pose.is_none()).count(),
         with_reading: rows().filter(|row| row.echo_cm.is_some()).count(),
+        further_sensors: sensors
+            .further()
+            .iter()
+            .enumerate()
+            .map(|(i, sensor)| with_reading(&runs, i, sensor))
+            .collect(),
+        with_counters: rows().filter(|row| row.rot_left_deg.is_some() && row.rot_right_deg.is_some()).count(),
+        with_gyro: rows().filter(|row| row.gyro_deg_s.is_some()).count(),
         jumps: prepared.jumps,
         saturated: prepared.saturated,
+        pauses,
     };
     Ok((runs, report))
+}
+
+/// Counts the readings of a further range sensor.
+fn with_reading(runs: &[Run], index: usize, sensor: &RangeSensor) -> SensorReport {
+    let readings = runs.iter().flat_map(|run| (0..run.rows.len()).filter_map(move |k| run.rows.further_cm(index, k)));
+    SensorReport { sensor: sensor.name.clone(), with_reading: readings.count() }
+}
+
+/// Returns what the inspection finds by the further range sensors beyond what is `known`.
+fn further_findings(logs: &Logs, known: &[Finding]) -> Vec<Finding> {
+    let of_sensor = |heard: Heard| {
+        let found = Inspection::new(heard.logs).findings.into_iter();
+        found.filter(|found| !known.contains(found)).map(move |found| found.of_sensor(&heard.sensor))
+    };
+    logs.by_sensor().into_iter().skip(1).flat_map(of_sensor).collect()
 }
 
 #[cfg(test)]

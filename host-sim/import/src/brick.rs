@@ -3,39 +3,59 @@
 //! Brick and camera have separate clocks. `clocks` aligns them by matching the motion of the wheels with the motion seen by the
 //! camera; the camera's poses are then interpolated at the times of the brick's rows. The [`Report`] lists everything left out.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use super::brick_log::{self, BrickLog};
 use super::clocks::{Alignment, Doubt, align};
+use super::command_times;
+use super::file_streams::{BodyTrack, FileStreams};
+use super::left_out::LeftOut;
 use super::motion;
-use super::report::{LogReport, Report, RunReport, TrackReport};
+use super::report::{LogReport, Report, RunReport};
 use super::scale_check::ScaleCheck;
+use super::statements::Statements;
 use super::track::{Sighting, Track};
-use super::units::Units;
 use mindgap_foundations::counter::Counter;
 use mindgap_foundations::error::{Error, Result};
 use mindgap_logs::{Logs, Robot, Row, Run, Scene};
 
-/// Merges brick logs and tracks, distinguished by their headers. `warn` receives one line for each irregularity, `watch` the
-/// number of logs matched so far and their total.
+/// Merges brick logs and tracks, distinguished by their headers. A file that cannot be used is left out. Among several bodies of
+/// a track, the one named `body`, or else the one that moves as the wheels do, is the robot. `warn` receives one line for each
+/// irregularity, `watch` the number of logs matched so far and their total.
 ///
 /// # Errors
-/// When a file cannot be read or parsed, when there is no log or no track, or when no log matches a track.
+/// When there is no log or no track, or when no log matches a track.
 pub fn import(
     files: &[PathBuf],
-    units: &Units,
+    stated: &Statements,
     robot: Robot,
     scene: Scene,
     mut warn: impl FnMut(String),
     watch: impl Fn(usize, usize),
 ) -> Result<(Logs, Report)> {
-    let (mut logs, mut tracks) = (Vec::new(), Vec::new());
-    for file in files {
-        if brick_log::is_brick_log(file)? {
-            logs.push(BrickLog::read(file, &mut warn)?);
-        } else {
-            tracks.push(Track::read(file, units, &robot)?);
+    let (mut logs, mut tracks, mut left_out, mut error) = (Vec::new(), Vec::new(), Vec::new(), None);
+    for (file, before) in files.iter().zip(0..) {
+        if files[..before].contains(file) {
+            left_out.push(LeftOut::file(file, "is given twice"));
+            continue;
         }
+        let read = match brick_log::is_brick_log(file) {
+            Ok(true) => BrickLog::read(file, &mut warn).map(|log| logs.push(log)),
+            Ok(false) => tracks_in(file, stated, &robot).map(|(found, unused)| {
+                tracks.extend(found);
+                left_out.extend(unused);
+            }),
+            Err(e) => Err(e),
+        };
+        if let Err(e) = read {
+            left_out.push(LeftOut::failed(file, &e));
+            error = error.or(Some(e));
+        }
+    }
+    if (logs.is_empty() || tracks.is_empty())
+        && let Some(error) = error
+    {
+        return Err(error);
     }
     if logs.is_empty() || tracks.is_empty() {
         let what =
@@ -67,10 +87,53 @@ pub fn import(
         let first = &reports[0];
         return Err(Error::in_file(&first.file, first.left_out.clone().unwrap_or_default()));
     }
-    let tracks = tracks.iter().map(|t| TrackReport { file: t.file.clone(), ..t.report() }).collect();
+    left_out.extend(unused_bodies(&tracks, &reports));
+    let tracks = tracks.iter().map(Track::report).collect();
     let logs = Logs { robot, scene, runs };
     logs.check_step(&reports[0].file)?;
-    Ok((logs, Report { tracks, logs: reports }))
+    Ok((logs, Report { tracks, logs: reports, left_out }))
+}
+
+/// Reads the tracks in a file, one per body, and what is not used.
+fn tracks_in(file: &Path, stated: &Statements, robot: &Robot) -> Result<(Vec<Track>, Vec<LeftOut>)> {
+    let (mut tracks, mut unused, mut error) = (Vec::new(), Vec::new(), None);
+    for FileStreams { bodies, source, .. } in FileStreams::read(file, stated)? {
+        unused.extend(source.unused);
+        if bodies.is_empty() {
+            let what = "contains neither a brick log (columns t_ms, left, right, rot_left_deg, rot_right_deg) nor poses: use `mindgap import streams` for commands without counters";
+            return Err(Error::in_file(file, what));
+        }
+        for BodyTrack { name, frames } in bodies {
+            if stated.body.as_ref().is_some_and(|body| *body != name) {
+                unused.push(LeftOut::body(&name, Some(frames.len()), "another body is chosen with --body").of(file));
+                continue;
+            }
+            match Track::of(file, frames, robot) {
+                Ok(track) => tracks.push(track.of_body(name)),
+                Err(e) => {
+                    unused.push(LeftOut::failed(file, &e));
+                    error = error.or(Some(e));
+                }
+            }
+        }
+    }
+    match error {
+        Some(error) if tracks.is_empty() => Err(error),
+        None if tracks.is_empty() => Err(Error::in_file(file, "has no body of the name that --body states")),
+        _ => Ok((tracks, unused)),
+    }
+}
+
+/// Returns the bodies that no log was matched with, in files where another body was.
+fn unused_bodies(tracks: &[Track], logs: &[LogReport]) -> Vec<LeftOut> {
+    let runs: Vec<&RunReport> = logs.iter().filter_map(|log| log.run.as_ref()).collect();
+    let is_used = |track: &&Track| runs.iter().any(|run| run.track == track.file && run.body == track.body);
+    let unused = tracks.iter().filter(|track| !is_used(track));
+    let unused = unused.filter_map(|track| {
+        let name = track.body.as_deref()?;
+        Some(LeftOut::body(name, Some(track.frames().len()), "it does not move as the wheels do").of(&track.file))
+    });
+    unused.collect()
 }
 
 /// Returns the track that matches a log best with their alignment, or why none does.
@@ -110,13 +173,16 @@ fn merge(log: &BrickLog, track: &Track, found: &Alignment, name: String) -> (Run
     let clocks = &found.clocks;
     let seen: Vec<Sighting> = log.run.rows.iter().map(|row| track.at(clocks.camera_ms(row.t_ms))).collect();
     let rows = log.run.rows.iter().zip(&seen).map(|(row, seen)| Row { pose: seen.pose(), ..row });
-    let run = Run { name: name.clone(), rows: rows.collect() };
+    let mut run = Run { name: name.clone(), rows: rows.collect() };
+    let changes_within_rows = command_times::place(&mut run);
     let report = RunReport {
         name,
         track: track.file.clone(),
+        body: track.body.clone(),
         offset_ms: clocks.offset_ms,
         drift: clocks.drift,
         unexplained: found.unexplained,
+        changes_within_rows,
         rows: seen.len(),
         outside: seen.iter().filter(|s| **s == Sighting::Outside).count(),
         in_gaps: seen.iter().filter(|s| **s == Sighting::Lost).count(),

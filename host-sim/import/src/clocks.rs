@@ -123,6 +123,11 @@ pub fn lag(log: &[CumulativeMotion], track: &[CumulativeMotion], max_ms: f64) ->
     candidates.into_iter().min_by(|a, b| a.1.total_cmp(&b.1))
 }
 
+/// Returns the track's rotation and travel per rotation and travel of the log; `None` for what does not move.
+pub fn gains(clocks: &Clocks, log: &[CumulativeMotion], track: &[CumulativeMotion]) -> [Option<f64>; MOTIONS] {
+    Misfit::of(clocks, log, track).map_or([None; MOTIONS], |misfit| misfit.gains)
+}
+
 /// Returns the unexplained fraction at each offset, ms, at which track and log overlap enough.
 fn unexplained_at_offsets(
     log: &[CumulativeMotion],
@@ -184,6 +189,8 @@ struct Misfit {
     residuals: Vec<Vec<f64>>,
     /// Unexplained fraction of the variance of each of these components.
     unexplained: Vec<f64>,
+    /// Camera's motion per wheel motion of each component; `None` if it did not move.
+    gains: [Option<f64>; MOTIONS],
     /// Number of steps compared.
     steps: usize,
 }
@@ -197,7 +204,7 @@ impl Misfit {
         if (steps.len() as f64) < MIN_COVERED * (log.len() - 1) as f64 {
             return None;
         }
-        let (mut residuals, mut unexplained) = (Vec::new(), Vec::new());
+        let (mut residuals, mut unexplained, mut gains) = (Vec::new(), Vec::new(), [None; MOTIONS]);
         for motion in 0..MOTIONS {
             let wheels = steps.iter().map(|(i, ..)| log[i + 1].by[motion] - log[*i].by[motion]);
             let camera = steps.iter().map(|(_, before, after)| after[motion] - before[motion]);
@@ -206,11 +213,12 @@ impl Misfit {
             let (wheel_power, camera_power) =
                 (sum(&mut wheels.clone().map(|w| w * w)), sum(&mut camera.clone().map(|c| c * c)));
             if wheel_power > 0.0 && camera_power > 0.0 {
+                gains[motion] = Some(cross_power / wheel_power);
                 residuals.push(wheels.zip(camera).map(|(w, c)| c - cross_power / wheel_power * w).collect());
                 unexplained.push(1.0 - cross_power * cross_power / (wheel_power * camera_power));
             }
         }
-        (!residuals.is_empty()).then_some(Misfit { residuals, unexplained, steps: steps.len() })
+        (!residuals.is_empty()).then_some(Misfit { residuals, unexplained, gains, steps: steps.len() })
     }
 
     fn mean(&self) -> f64 {

@@ -137,6 +137,18 @@ pub const SCENE: &str = "\
 # heading_deg = 0
 ";
 
+/// Returns a warning if values in the `robot.toml` of a folder are still to be filled in.
+///
+/// # Errors
+/// When the file cannot be read.
+pub fn warning(folder: &Path) -> Result<Option<String>> {
+    let robot = folder.join("robot.toml");
+    let open = to_fill_in(&robot.display().to_string(), &files::read_text(&robot)?);
+    let others = if open.len() > 1 { format!(" and {} more", open.len() - 1) } else { String::new() };
+    let warning = |first| format!("{first}{others}: still marked {FILL_IN}: an error in it will show up as a gap");
+    Ok(open.first().map(warning))
+}
+
 /// Returns the lines of a file's text that must be filled in.
 pub fn to_fill_in(file: &str, text: &str) -> Vec<String> {
     let open = text.lines().filter_map(|line| {

@@ -25,6 +25,8 @@ pub struct Mapping {
 pub struct Mapped {
     /// Quantity in the column.
     pub quantity: Quantity,
+    /// Name of the range sensor, unless it is the first.
+    pub sensor: Option<String>,
     /// Name of the column.
     pub column: String,
     /// Unit, if stated.
@@ -89,7 +91,8 @@ impl Mapping {
 }
 
 fn mapped(name: &str, entry: Entry) -> std::result::Result<Mapped, String> {
-    let quantity = Quantity::from_name(name).ok_or_else(|| {
+    let sensor = name.strip_prefix("range_").map(str::to_owned);
+    let quantity = Quantity::from_name(if sensor.is_some() { "range" } else { name }).ok_or_else(|| {
         let names: Vec<&str> = QUANTITIES.iter().map(|(_, name, _)| *name).collect();
         format!("unknown quantity {name:?}; expected one of {}", names.join(", "))
     })?;
@@ -105,7 +108,7 @@ fn mapped(name: &str, entry: Entry) -> std::result::Result<Mapped, String> {
             quantity.name()
         )),
     });
-    Ok(Mapped { quantity, column, unit: unit.transpose()?, negate })
+    Ok(Mapped { quantity, sensor, column, unit: unit.transpose()?, negate })
 }
 
 #[cfg(test)]

@@ -3,6 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use super::frame::Frame;
+use super::left_out::LeftOut;
+use super::own_motion::OwnMotion;
 use super::report::Source;
 use mindgap_foundations::error::{Error, Result};
 use mindgap_logs::Robot;
@@ -16,8 +18,10 @@ pub struct Recording {
     pub poses: Vec<Option<Frame>>,
     /// File of the poses.
     pub track: PathBuf,
-    /// Readings of the range sensor, if any.
-    pub readings: Option<Readings>,
+    /// Readings of the range sensors that were heard, in the order of the sensors.
+    pub readings: Vec<Readings>,
+    /// What the robot measured of its own motion.
+    pub own_motion: OwnMotion,
     /// Whether all streams are known to share one clock.
     pub has_one_clock: bool,
     /// Sources, for the report.
@@ -46,11 +50,16 @@ pub enum Kind {
     Motors,
 }
 
+/// Times, ms, and distances, cm; `None` if there was no echo.
+pub type Echoes = Vec<(f64, Option<f64>)>;
+
 /// Readings of a range sensor.
 #[derive(Clone, Debug)]
 pub struct Readings {
-    /// Time, ms, and distance, cm; `None` if there was no echo.
-    pub samples: Vec<(f64, Option<f64>)>,
+    /// Index of the sensor among those of the robot.
+    pub sensor: usize,
+    /// The readings, in temporal order.
+    pub samples: Echoes,
     /// Whether they are on the clock of the poses rather than that of the commands.
     pub on_clock_of_poses: bool,
 }
@@ -59,6 +68,12 @@ pub struct Readings {
 const MAX_SATURATED: f64 = 0.05;
 /// Relative excess over full speed that counts as rounding.
 const ROUNDING: f64 = 1e-6;
+
+/// Numbers of values in a byte, and in a byte that is read as signed.
+const BYTE: f64 = 256.0;
+const SIGNED_BYTE: (f64, f64) = (-128.0, 127.0);
+/// Fewer negative values stand for no echo.
+const MIN_SIGNED: usize = 4;
 
 impl Kind {
     /// Returns the rim speeds of the left and right wheel, cm/s.
@@ -73,11 +88,57 @@ impl Kind {
 }
 
 impl Recording {
+    /// Corrects negative readings, and reports that.
+    pub fn correct_signs(&mut self) {
+        for readings in &mut self.readings {
+            let (corrected, removed) = readings.correct_signs();
+            if let Some(source) = self.sources.last_mut() {
+                source.guessed.extend(corrected);
+                source.unused.extend(removed);
+            }
+        }
+    }
+
     /// Drops the readings of a robot without a range sensor.
     pub fn drop_readings(&mut self) {
-        if let (Some(_), Some(source)) = (self.readings.take(), self.sources.last_mut()) {
-            source.left_out.push("all readings, since robot.toml has no [ultrasonic]".into());
+        for readings in self.readings.drain(..) {
+            let reason = "robot.toml has no [ultrasonic]";
+            if let Some(source) = self.sources.last_mut() {
+                source.unused.push(LeftOut::rows("reading", readings.samples.len(), reason));
+            }
         }
+    }
+}
+
+impl Readings {
+    /// Corrects readings that a driver took for signed bytes, and removes other negative numbers; returns the correction, if
+    /// any, and what was removed.
+    pub fn correct_signs(&mut self) -> (Option<String>, Option<LeftOut>) {
+        let mut negative: Vec<f64> = self.samples.iter().filter_map(|(_, cm)| cm.filter(|cm| *cm < 0.0)).collect();
+        let count = negative.len();
+        negative.sort_by(f64::total_cmp);
+        negative.dedup();
+        let is_byte = |cm: f64| (SIGNED_BYTE.0..=SIGNED_BYTE.1).contains(&cm) && (cm - cm.round()).abs() < 1e-3;
+        let are_bytes = negative.len() >= MIN_SIGNED && self.samples.iter().filter_map(|(_, cm)| *cm).all(is_byte);
+        let unsigned = |cm: f64| match cm {
+            cm if cm >= 0.0 => Some(cm),
+            cm if are_bytes => Some(cm + BYTE).filter(|cm| cm.round() < BYTE - 1.0),
+            _ => None,
+        };
+        self.samples.iter_mut().for_each(|(_, cm)| *cm = cm.and_then(unsigned));
+        if are_bytes {
+            let what = format!(
+                "{count} readings are negative, of {} values: a byte read as signed, so {BYTE} was added; -1 is 255, no echo",
+                negative.len()
+            );
+            return (Some(what), None);
+        }
+        let what = if negative.len() < MIN_SIGNED { "no echo" } else { "not distances, and not bytes read as signed" };
+        (
+            None,
+            (count > 0)
+                .then(|| LeftOut::rows("negative reading", count, format!("of {} values: {what}", negative.len()))),
+        )
     }
 }
 
@@ -124,8 +185,9 @@ impl Commands {
 }
 
 impl Readings {
-    /// Returns the latest reading at a time, unless it is older than `max_age_ms`.
-    pub fn at(&self, t_ms: f64, max_age_ms: f64) -> Option<f64> {
+    /// Returns the latest reading at a time on the clocks of commands and poses, unless it is older than `max_age_ms`.
+    pub fn at(&self, [command_ms, pose_ms]: [f64; 2], max_age_ms: f64) -> Option<f64> {
+        let t_ms = if self.on_clock_of_poses { pose_ms } else { command_ms };
         let (read_ms, cm) = self.samples.get(self.samples.partition_point(|(ms, _)| *ms <= t_ms).checked_sub(1)?)?;
         cm.filter(|_| t_ms - read_ms < max_age_ms)
     }
@@ -151,6 +213,26 @@ mod tests {
         assert_eq!(as_motor_commands(Kind::WheelSpeeds, [10.0, -20.0]).expect("slow"), [20.0, -40.0]);
         assert_eq!(as_motor_commands(Kind::WheelRates, [2.0, -4.0]).expect("slow"), [20.0, -40.0]);
         assert_eq!(as_motor_commands(Kind::Motors, [50.0, -100.0]).expect("slow"), [50.0, -100.0]);
+    }
+
+    #[test]
+    fn signed_bytes_are_corrected_and_other_negative_readings_reported() {
+        let corrected = |numbers: &[f64]| {
+            let samples = numbers.iter().map(|cm| (0.0, Some(*cm))).collect();
+            let mut readings = Readings { sensor: 0, samples, on_clock_of_poses: false };
+            let (corrected, removed) = readings.correct_signs();
+            let cm: Vec<Option<f64>> = readings.samples.iter().map(|(_, cm)| *cm).collect();
+            (cm, corrected, removed)
+        };
+        let (cm, what, removed) = corrected(&[100.0, 127.0, -128.0, -116.0, -60.0, -1.0]);
+        assert_eq!(cm, [Some(100.0), Some(127.0), Some(128.0), Some(140.0), Some(196.0), None]);
+        assert!(what.expect("corrected").contains("a byte read as signed") && removed.is_none());
+        let (cm, what, removed) = corrected(&[100.0, 230.0, -1.0, -1.0]);
+        assert_eq!((cm, what), (vec![Some(100.0), Some(230.0), None, None], None));
+        assert_eq!(removed.and_then(|removed| removed.rows), Some(2));
+        let (cm, what, removed) = corrected(&[30.5, -1.5, -2.5, -3.5, -4.5]);
+        assert_eq!((cm[1], what), (None, None));
+        assert!(removed.expect("reported").reason.contains("not bytes read as signed"));
     }
 
     #[test]

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use super::left_out::{LeftOut, What};
 use super::scale_check::ScaleCheck;
 use mindgap_foundations::statistics::summary::median;
 
@@ -15,6 +16,8 @@ pub struct Report {
     pub tracks: Vec<TrackReport>,
     /// Brick logs.
     pub logs: Vec<LogReport>,
+    /// Everything that is not used, with the reason.
+    pub left_out: Vec<LeftOut>,
 }
 
 /// Summary of a camera track.
@@ -22,6 +25,8 @@ pub struct Report {
 pub struct TrackReport {
     /// File of the track.
     pub file: PathBuf,
+    /// Body of a motion capture; null if the file has a single one without a name.
+    pub body: Option<String>,
     /// Total number of frames.
     pub frames: usize,
     /// Number of frames without a pose.
@@ -50,12 +55,16 @@ pub struct RunReport {
     pub name: String,
     /// File of the matching track.
     pub track: PathBuf,
+    /// Body of the track; null if the file has a single one without a name.
+    pub body: Option<String>,
     /// Camera time at brick time 0, ms.
     pub offset_ms: f64,
     /// Relative drift of the camera's clock: 1e-4 is 0.1 ms per second faster than the brick's.
     pub drift: f64,
     /// Fraction of the motion's variance that the alignment leaves unexplained, 0..=1.
     pub unexplained: f64,
+    /// Number of changes of command that the rotation counters place between two rows; the rows hold their mean commands.
+    pub changes_within_rows: usize,
     /// Number of rows.
     pub rows: usize,
     /// Number of rows without a pose because they are before or after the track.
@@ -77,6 +86,8 @@ pub struct RecordingsReport {
     pub findings: Vec<String>,
     /// Values that must be filled in by hand.
     pub to_fill_in: Vec<String>,
+    /// Everything that is not used, with the reason.
+    pub left_out: Vec<LeftOut>,
 }
 
 /// A recording that was imported.
@@ -92,12 +103,54 @@ pub struct RecordingReport {
     pub rows: usize,
     /// Number of rows without a pose.
     pub without_pose: usize,
-    /// Number of rows with a reading.
+    /// Number of rows with a reading of the first range sensor.
     pub with_reading: usize,
+    /// The further range sensors.
+    pub further_sensors: Vec<SensorReport>,
+    /// Number of rows with both rotation counters.
+    pub with_counters: usize,
+    /// Number of rows with a yaw rate of a gyro.
+    pub with_gyro: usize,
     /// Number of poses excluded because the robot cannot move that fast.
     pub jumps: usize,
-    /// Number of commands above the robot's full speed, which were saturated.
+    /// Number of commands beyond full speed, which were limited to it.
     pub saturated: usize,
+    /// Pauses in the commands; null if there are none.
+    pub pauses: Option<PausesReport>,
+}
+
+/// Readings of a further range sensor.
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+pub struct SensorReport {
+    /// Name of the sensor.
+    pub sensor: String,
+    /// Number of rows with a reading.
+    pub with_reading: usize,
+}
+
+/// Pauses in a stream of commands while the last one asks for motion.
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+pub struct PausesReport {
+    /// Number of pauses.
+    pub number: usize,
+    /// Longest pause, s.
+    pub longest_s: f64,
+    /// Time after the last command at which the base stops by itself, ms; null if it drives on.
+    pub stops_after_ms: Option<f64>,
+    /// How `stops_after_ms` was determined.
+    pub determined: Determined,
+}
+
+/// How the behaviour of a base in pauses was determined.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Determined {
+    /// From the motion.
+    Inferred,
+    /// By the user.
+    Stated,
+    /// It was assumed, since the motion does not show it.
+    Assumed,
 }
 
 /// Relation of the clocks of commands and poses.
@@ -113,6 +166,10 @@ pub struct ClocksReport {
     pub lag_ms: Option<f64>,
     /// Fraction of the motion's variance that commands do not explain, 0..=1; null if nothing moves.
     pub unexplained: Option<f64>,
+    /// Travelled per commanded distance, at the given lag; null if it is unknown.
+    pub travel_gain: Option<f64>,
+    /// Tracked per commanded rotation, at the given lag; null if it is unknown.
+    pub rotation_gain: Option<f64>,
 }
 
 /// A file or topic that was read.
@@ -132,6 +189,9 @@ pub struct Source {
     pub guessed: Vec<String>,
     /// Samples left out, with the reason.
     pub left_out: Vec<String>,
+    /// Columns, bodies and rows that are not used; part of the report's `left_out`.
+    #[serde(skip)]
+    pub unused: Vec<LeftOut>,
 }
 
 impl Source {
@@ -152,7 +212,18 @@ impl Source {
             mapped: Vec::new(),
             guessed: Vec::new(),
             left_out: Vec::new(),
+            unused: Vec::new(),
         }
+    }
+
+    /// Returns whether it is of this file.
+    pub fn is_of(&self, file: &Path) -> bool {
+        self.name == file.display().to_string()
+    }
+
+    /// Returns the columns that are not used.
+    pub fn unused_columns(&self) -> impl Iterator<Item = &LeftOut> {
+        self.unused.iter().filter(|unused| unused.what == What::Column)
     }
 
     /// Sets the assignments of quantities.

@@ -46,6 +46,22 @@ const LENGTHS: [(f64, &str, &str); 6] = [
     (1000.0, "mm", "m"),
 ];
 
+/// Ratios of tracked to commanded travel and rotation for each unit of the wheels that was read as cm.
+const WHEELS: [(f64, &str); 2] = [(100.0, "m"), (0.1, "mm")];
+/// Ratios of tracked to commanded rotation, with their causes.
+const ROTATIONS: [(f64, &str); 4] = [
+    (
+        PI / 180.0,
+        "the heading seems to be in rad and was read in deg; name its column heading_rad or give --angle-unit rad",
+    ),
+    (
+        180.0 / PI,
+        "the heading seems to be in deg and was read in rad; name its column heading_deg or give --angle-unit deg",
+    ),
+    (0.01, "track_cm in robot.toml seems to be in m; write centimetres"),
+    (10.0, "track_cm in robot.toml seems to be in mm; write centimetres"),
+];
+
 impl ScaleCheck {
     /// Sums and fits the steps.
     pub fn of(steps: impl Iterator<Item = Step>) -> Self {
@@ -89,7 +105,21 @@ impl ScaleCheck {
     /// Returns an error message if a unit seems wrong; `source` and `track` name the two sources.
     pub fn refusal(&self, source: &str, track: &str) -> Option<String> {
         let is_near = |gain: f64, unit: f64| (unit / WITHIN..unit * WITHIN).contains(&gain);
+        let turned = self.rotation_ratio.map(f64::abs);
         let length = self.travel_ratio.and_then(|gain| LENGTHS.into_iter().find(|(unit, ..)| is_near(gain, *unit)));
+        // A wrong wheel changes travel and rotation alike.
+        let wheels = WHEELS.into_iter().find(|(unit, _)| {
+            self.travel_ratio.is_some_and(|gain| is_near(gain, *unit))
+                && turned.is_some_and(|gain| is_near(gain, *unit))
+        });
+        if let Some((_, is)) = wheels {
+            return Some(format!(
+                "{track} shows {} times the travel and {} times the rotation of {source}: wheel_diameter_cm or \
+                 full_speed_cm_s in robot.toml seems to be in {is}; write centimetres",
+                short(self.travel_ratio?),
+                short(turned?)
+            ));
+        }
         if let Some((_, is, read)) = length {
             return Some(format!(
                 "{source} travel {:.1} cm where {track} shows {:.1} cm, {} times as much: the track seems to be in {is} and was \
@@ -100,20 +130,18 @@ impl ScaleCheck {
                 short(self.travel_ratio?)
             ));
         }
-        let gain = self.rotation_ratio?.abs();
-        let (is, read) = match gain {
-            gain if is_near(gain, PI / 180.0) => ("rad", "deg"),
-            gain if is_near(gain, 180.0 / PI) => ("deg", "rad"),
-            _ => return None,
-        };
-        Some(format!(
-            "{source} turn {:.0} deg where {track} shows {:.0} deg, {} times as much: the heading seems to be in {is} and was read \
-             in {read}; name its column heading_{is} or give --angle-unit {is} (or correct the turn rates if those \
-             are wrong)",
-            self.commanded_deg,
-            self.tracked_deg,
-            short(gain)
-        ))
+        let gain = turned?;
+        let off = |unit: f64| libm::log(gain / unit).abs();
+        let (unit, cause) = ROTATIONS.into_iter().min_by(|a, b| off(a.0).total_cmp(&off(b.0)))?;
+        is_near(gain, unit).then(|| {
+            format!(
+                "{source} turn {:.0} deg where {track} shows {:.0} deg, {} times as much: {cause} (or correct the turn rates if \
+                 those are wrong)",
+                self.commanded_deg,
+                self.tracked_deg,
+                short(gain)
+            )
+        })
     }
 }
 
@@ -138,7 +166,8 @@ mod tests {
 
     fn check(length: f64, angle: f64) -> ScaleCheck {
         ScaleCheck::of((0..20).map(|i| {
-            let rad = 0.1 + 0.01 * f64::from(i % 5);
+            // Not wrapped by the largest factor.
+            let rad = 0.01 + 0.001 * f64::from(i % 5);
             ([4.0, rad], Pose::new(0.0, 0.0, 0.0), Pose::new(4.0 * length, 0.0, rad * angle))
         }))
     }
@@ -153,5 +182,14 @@ mod tests {
         );
         let degrees = check(1.0, PI / 180.0).refusal("the wheels", "the track").expect("refused");
         assert!(degrees.contains("--angle-unit rad"), "{degrees}");
+        for (length, angle, what) in [
+            (1.0, 0.01, "track_cm in robot.toml seems to be in m;"),
+            (1.0, 10.0, "track_cm in robot.toml seems to be in mm;"),
+            (100.0, 100.0, "full_speed_cm_s in robot.toml seems to be in m;"),
+            (0.1, 0.1, "full_speed_cm_s in robot.toml seems to be in mm;"),
+        ] {
+            let refusal = check(length, angle).refusal("the wheels", "the track").expect("refused");
+            assert!(refusal.contains(what), "{refusal}");
+        }
     }
 }

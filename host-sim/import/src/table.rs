@@ -1,24 +1,31 @@
-//! Reads text tables with any separator, flexible headers, and decimal points or commas.
+//! Reads text tables as loggers, spreadsheets and boards write them: with any separator, lines before the header, decimal points
+//! or commas, a header that is repeated after a restart, and a torn last line.
 
-use std::iter;
+mod cell;
+mod foreign;
+mod header;
+mod source;
+
 use std::path::{Path, PathBuf};
 
 use csv::{ReaderBuilder, StringRecord};
 
-use mindgap_files::{self as files, Records};
+use super::left_out::LeftOut;
+use super::quantities::Unit;
+use mindgap_files::Records;
 use mindgap_foundations::error::{Error, Result};
+
+pub use self::cell::shortened;
+pub use self::header::{Header, cells, lines};
+pub use self::source::read as read_source;
 
 /// A table with a header.
 pub struct Table {
     /// File of the table.
     pub file: PathBuf,
-    /// Names of the columns, as written.
-    pub names: Vec<String>,
-    /// Text below the header.
-    body: String,
-    /// Line number of the header.
-    header_line: u64,
-    separator: u8,
+    /// The header.
+    pub header: Header,
+    text: String,
 }
 
 /// A line of a table.
@@ -26,78 +33,145 @@ pub struct Line<'a> {
     table: &'a Table,
     /// Line number in the file.
     pub number: u64,
-    record: StringRecord,
+    /// How many times the header was repeated above this line.
+    pub part: usize,
+    record: &'a StringRecord,
 }
 
-/// Separators of cells, besides whitespace.
-const SEPARATORS: [u8; 4] = [b',', b';', b'\t', b'|'];
-/// First characters of comment lines.
-const COMMENT: [char; 2] = ['#', '%'];
+/// Maximum length of the name of a column, bytes: messages show names.
+const MAX_NAME: usize = 1000;
+/// Maximum number of lines that a board may print between a reset and its header.
+const MAX_BOOT_LINES: usize = 200;
 
 impl Table {
-    /// Reads a table.
+    /// Finds the header of a text.
     ///
     /// # Errors
-    /// When the file cannot be read or has no header.
-    pub fn read(file: &Path) -> Result<Self> {
-        let text = files::read_text(file)?;
-        let mut lines = text.split_inclusive('\n').enumerate();
-        let (mut header, mut body_start, mut offset) = (None, 0, 0);
-        let first = lines.find_map(|(i, line)| {
-            body_start = offset;
-            offset += line.len();
-            let is_comment = line.starts_with(COMMENT);
-            if is_comment {
-                header = Some((i, line));
+    /// When the text is empty, is another format or has no header.
+    pub fn find(file: &Path, text: String) -> Result<Self> {
+        let header = Header::find(&text).map_err(|(line, what)| match line {
+            Some(line) => Error::at_line(file, line, what),
+            None => Error::in_file(file, what),
+        })?;
+        match header.names.iter().find(|name| name.len() > MAX_NAME) {
+            Some(name) => {
+                let what = format!("the name of a column has {} characters: not a table", name.len());
+                Err(Error::at_line(file, header.line, what))
             }
-            (!is_comment && !line.trim().is_empty()).then_some((i, line))
-        });
-        let Some(first) = first else { return Err(Error::in_file(file, "contains only comments")) };
-        // The header may be a comment, the last one before the numbers.
-        let is_header = |line: &str| !cells(line, separator(line)).iter().any(|cell| number(cell, false).is_some());
-        let ((line, header), body_start) = match header {
-            _ if is_header(first.1) => (first, offset),
-            Some((i, comment)) if separator(comment) == separator(first.1) => {
-                ((i, comment.trim_start_matches(COMMENT)), body_start)
-            }
-            _ => {
-                let what =
-                    "has numbers but no header: name the columns in the first line, such as t_s,x_m,y_m,heading_rad";
-                return Err(Error::at_line(file, first.0 as u64 + 1, what));
-            }
-        };
-        let separator = separator(header);
-        let body = match separator {
-            b' ' => text[body_start..]
-                .lines()
-                .map(|line| line.split_whitespace().collect::<Vec<_>>().join(" ") + "\n")
-                .collect(),
-            _ => text[body_start..].to_owned(),
-        };
-        Ok(Table { file: file.into(), names: cells(header, separator), body, header_line: line as u64 + 1, separator })
+            None => Ok(Table { file: file.into(), header, text }),
+        }
     }
 
-    /// Iterates over the lines below the header, each with at least as many cells.
-    pub fn lines(&self) -> impl Iterator<Item = Result<Line<'_>>> {
-        let mut settings = ReaderBuilder::new();
-        settings.has_headers(false).flexible(true).delimiter(self.separator).trim(csv::Trim::All);
-        let mut records = Records::with(&self.file, self.body.as_bytes(), &settings);
-        let next = move || {
-            let mut record = StringRecord::new();
-            records.read(&mut record).transpose().map(|line| line.map(|line| (line, record)))
+    /// Makes a table of a text whose header is known.
+    pub fn with(file: &Path, text: String, header: Header) -> Self {
+        Table { file: file.into(), header, text }
+    }
+
+    /// Returns the names of the columns, as written.
+    pub fn names(&self) -> &[String] {
+        &self.header.names
+    }
+
+    /// Returns the unit in a row below the header, if there is one.
+    pub fn unit(&self, column: usize) -> Option<Unit> {
+        self.header.units.get(column).copied().flatten()
+    }
+
+    /// Calls `each` with the lines below the header, each with at least as many cells, and returns what was left out. Lines between
+    /// a reset and the repeated header are left out, and so is the last line if it is torn.
+    ///
+    /// # Errors
+    /// When a line is malformed, or `each` fails.
+    pub fn for_each(&self, mut each: impl FnMut(&Line) -> Result<()>) -> Result<Vec<LeftOut>> {
+        let mut left_out = self.header.left_out.clone();
+        let Header { names, separator, body, lines_before, .. } = &self.header;
+        let settings = settings(*separator);
+        let normalised;
+        let body = match separator {
+            b' ' => {
+                let line = |line: &str| line.split_whitespace().collect::<Vec<_>>().join(" ") + "\n";
+                normalised = self.text[body.clone()].lines().map(line).collect::<String>();
+                &normalised
+            }
+            _ => &self.text[body.clone()],
         };
-        iter::from_fn(next).map(|read| {
-            let (line, record) = read?;
-            let number = self.header_line + line;
-            if record.len() < self.names.len() {
-                let what = format!(
-                    "has {} cells where the header has {}: incomplete or malformed line",
-                    record.len(),
-                    self.names.len()
-                );
+        let mut records = Records::with(&self.file, body.as_bytes(), &settings);
+        let (mut record, mut part) = (StringRecord::new(), 0);
+        // Malformed lines are fine only before a repeated header or at the end.
+        let mut malformed: Vec<(u64, Error)> = Vec::new();
+        let mut failed: Option<(u64, Error)> = None;
+        while let Some(line) = records.read(&mut record)? {
+            let number = lines_before + line;
+            if let Some(torn) = header::repeats(names, &record) {
+                part += 1;
+                // The line before a restart may be torn within a number.
+                malformed.extend(failed.take());
+                let reason = match malformed.len() + usize::from(torn) {
+                    0 => format!("line {number} has the header again"),
+                    lines => format!("line {number} has the header again, after {lines} lines of a restart"),
+                };
+                left_out.push(LeftOut::rows("repeated header", 1 + malformed.len(), reason));
+                malformed.clear();
+                continue;
+            }
+            if let Some((_, error)) = failed.take() {
+                return Err(error);
+            }
+            if is_comment(&record, names.len()) {
+                continue;
+            }
+            if record.iter().any(|cell| cell.contains('\n')) {
+                let what = "a quotation mark before this line is not closed";
                 return Err(Error::at_line(&self.file, number, what));
             }
-            Ok(Line { table: self, number, record })
+            if let Some(what) = self.malformed(&record) {
+                if malformed.len() == MAX_BOOT_LINES {
+                    break;
+                }
+                malformed.push((number, Error::at_line(&self.file, number, what)));
+                continue;
+            }
+            if let Some((_, error)) = malformed.into_iter().next() {
+                return Err(error);
+            }
+            malformed = Vec::new();
+            let line = Line { table: self, number, part, record: &record };
+            failed = each(&line).err().map(|error| (number, error));
+        }
+        let is_cut = !self.text.ends_with(['\n', '\r']);
+        match (malformed.len(), failed) {
+            (0, None) => {}
+            (0, Some((line, _))) if is_cut => left_out.push(torn(line)),
+            (1, None) => left_out.push(torn(malformed[0].0)),
+            (0, Some((_, error))) => return Err(error),
+            _ => return malformed.into_iter().next().map_or(Ok(left_out), |(_, error)| Err(error)),
+        }
+        Ok(left_out)
+    }
+
+    /// Returns the cells of the first line below the header.
+    pub fn first_row(&self) -> Vec<String> {
+        let first = self.text[self.header.body.clone()].lines().find(|line| !line.trim().is_empty());
+        let mut reader = settings(self.header.separator).from_reader(first.unwrap_or_default().as_bytes());
+        let record = reader.records().next().and_then(std::result::Result::ok).unwrap_or_default();
+        record.iter().map(str::to_owned).collect()
+    }
+
+    /// Returns why the number of cells is wrong, if it is.
+    fn malformed(&self, record: &StringRecord) -> Option<String> {
+        let expected = self.header.names.len();
+        if record.len() < expected {
+            let count = record.len();
+            return Some(format!("has {count} cells where the header has {expected}: incomplete or malformed line"));
+        }
+        let has_more = record.iter().skip(expected).any(|cell| !cell.is_empty());
+        has_more.then(|| {
+            let hint = if record.len() == 2 * expected && self.header.separator == b',' {
+                "are the decimals separated by commas too? write points, or separate cells by semicolons"
+            } else {
+                "malformed line"
+            };
+            format!("has {} cells where the header has {expected}: {hint}", record.len())
         })
     }
 }
@@ -108,19 +182,19 @@ impl Line<'_> {
         self.record.get(column).unwrap_or_default()
     }
 
-    /// Returns the number in a cell; `None` if it is empty or `nan`. Infinity is allowed.
+    /// Returns the number in a cell; `None` if it is empty or says that there is none. Infinity is allowed.
     ///
     /// # Errors
     /// When the cell is anything else.
     pub fn number(&self, column: usize) -> Result<Option<f64>> {
-        let cell = self.text(column);
-        if cell.is_empty() || ["nan", "na", "null", "none", "-"].contains(&cell.to_lowercase().as_str()) {
+        let text = self.text(column);
+        if cell::is_missing(text) {
             return Ok(None);
         }
-        let is_comma_decimal = self.table.separator != b',';
-        number(cell, is_comma_decimal)
-            .map(Some)
-            .ok_or_else(|| self.error(format!("{} = {cell:?} is not a number", self.table.names[column])))
+        cell::number(text).map(Some).ok_or_else(|| {
+            let name = self.table.names().get(column).map_or("a cell", String::as_str);
+            self.error(format!("{} = {:?} is not a number", shortened(name), shortened(text)))
+        })
     }
 
     /// Returns an error at this line.
@@ -129,73 +203,21 @@ impl Line<'_> {
     }
 }
 
-fn number(cell: &str, is_comma_decimal: bool) -> Option<f64> {
-    let value = cell.parse::<f64>();
-    let value = if is_comma_decimal { value.or_else(|_| cell.replacen(',', ".", 1).parse()) } else { value };
-    value.ok().filter(|v| !v.is_nan())
+fn settings(separator: u8) -> ReaderBuilder {
+    let mut settings = ReaderBuilder::new();
+    settings.has_headers(false).flexible(true).delimiter(separator).trim(csv::Trim::All);
+    settings
 }
 
-/// Returns the most frequent separator of a header, or a space if it has none.
-fn separator(header: &str) -> u8 {
-    let count = |separator: &u8| header.bytes().filter(|b| b == separator).count();
-    SEPARATORS.into_iter().rev().max_by_key(count).filter(|s| count(s) > 0).unwrap_or(b' ')
+fn torn(line: u64) -> LeftOut {
+    LeftOut::rows("torn line", 1, format!("line {line}, the last line, is incomplete"))
 }
 
-fn cells(line: &str, separator: u8) -> Vec<String> {
-    let bare = |cell: &str| cell.trim().trim_matches('"').trim().to_owned();
-    match separator {
-        b' ' => line.split_whitespace().map(bare).collect(),
-        _ => line.trim_end_matches(['\r', '\n']).split(char::from(separator)).map(bare).collect(),
-    }
+/// Returns whether a record is a comment among the rows.
+fn is_comment(record: &StringRecord, columns: usize) -> bool {
+    record.len() < columns
+        && record.get(0).is_some_and(|cell| cell.starts_with(header::COMMENT) && !cell::is_missing(cell))
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    type Rows = Vec<Vec<Option<f64>>>;
-
-    fn read(text: &str) -> Result<(Vec<String>, Rows)> {
-        let folder = tempfile::tempdir().expect("a folder");
-        let file = folder.path().join("t.csv");
-        files::write(&file, text)?;
-        let table = Table::read(&file)?;
-        let rows = table.lines().map(|line| {
-            let line = line?;
-            (0..table.names.len()).map(|column| line.number(column)).collect()
-        });
-        Ok((table.names.clone(), rows.collect::<Result<_>>()?))
-    }
-
-    #[test]
-    fn separators_and_header_styles_are_recognised() {
-        let expected =
-            (vec!["t".to_owned(), "x m".to_owned()], vec![vec![Some(0.0), Some(1.5)], vec![Some(1.0), None]]);
-        for text in [
-            "t,x m\n0,1.5\n1,\n",
-            "\u{feff}t;x m\r\n0;1,5\r\n1;\r\n",
-            "# made by hand\n\nt\tx m\n0\t1.5\n1\tNaN\n",
-            "\"t\" | \"x m\"\n0 | 1.5\n1 | nan\n",
-            "# made by hand\n# t,x m\n0,1.5\n1,null\n",
-        ] {
-            assert_eq!(read(text).expect(text), expected, "{text:?}");
-        }
-        let spaces = read("% t   x\n  0   1.5\n1 -\n").expect("blanks");
-        assert_eq!(spaces, (vec!["t".to_owned(), "x".to_owned()], expected.1));
-    }
-
-    #[test]
-    fn invalid_tables_are_rejected_with_line_number() {
-        for (text, what) in [
-            ("", "contains only comments"),
-            ("# only words\n", "contains only comments"),
-            ("0,1.5\n1,2\n", ":1: has numbers but no header"),
-            ("t,x\n0,1\n1\n", ":3: has 1 cells where the header has 2"),
-            ("t,x\n0,1\n1,far\n", ":3: x = \"far\" is not a number"),
-            ("#c\nt,x\n0,1\n1,far\n", ":4: x = \"far\" is not a number"),
-        ] {
-            let error = read(text).expect_err(text).to_string();
-            assert!(error.contains(what), "{text:?} gave {error}");
-        }
-    }
-}
+mod tests;

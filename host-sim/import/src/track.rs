@@ -1,14 +1,10 @@
 //! Camera tracks: the robot's pose frame by frame, on the camera's own clock.
 
-mod columns;
-mod motive;
-
 use std::path::{Path, PathBuf};
 
 use super::frame::{Frame, GAP_MS};
 use super::motion::{CumulativeMotion, by_camera};
 use super::report::TrackReport;
-use super::units::Units;
 use mindgap_foundations::error::{Error, Result};
 use mindgap_foundations::geometry::{Pose, wrap_rad};
 use mindgap_logs::Robot;
@@ -18,6 +14,8 @@ use mindgap_logs::Robot;
 pub struct Track {
     /// File of the track.
     pub file: PathBuf,
+    /// Body of a motion capture; `None` if the file has a single one without a name.
+    pub body: Option<String>,
     /// Frames that show the robot, in temporal order.
     frames: Vec<Frame>,
     lost: usize,
@@ -43,17 +41,6 @@ const TOLERANCE_CM: f64 = 4.0;
 const TOLERANCE_RAD: f64 = 0.25;
 
 impl Track {
-    /// Reads a track: CSV with units in the column names, or a rigid body exported by Motive.
-    ///
-    /// # Errors
-    /// When the file cannot be read or parsed, when a column or its unit is missing, or when fewer than two frames show the robot.
-    pub fn read(file: &Path, units: &Units, robot: &Robot) -> Result<Self> {
-        let text = mindgap_files::read_text(file)?;
-        let frames =
-            if motive::is_motive(&text) { motive::frames(file, &text) } else { columns::frames(file, &text, units) };
-        Track::of(file, frames?, robot)
-    }
-
     /// Builds a track from frames, `None` where the robot was lost, without jumps.
     ///
     /// # Errors
@@ -70,12 +57,17 @@ impl Track {
         if frames.len() < 2 {
             return Err(Error::in_file(file, format!("has {} frame(s) in which the robot was seen", frames.len())));
         }
-        Ok(Track { file: file.to_owned(), lost, jumps: whole - frames.len(), frames })
+        Ok(Track { file: file.to_owned(), body: None, lost, jumps: whole - frames.len(), frames })
+    }
+
+    /// Names the body; an empty name is that of the only body in a file.
+    pub fn of_body(self, name: String) -> Self {
+        Track { body: Some(name).filter(|name| !name.is_empty()), ..self }
     }
 
     /// Builds a track from frames known to be in order and without jumps.
     pub fn without_check(file: &Path, frames: Vec<Frame>) -> Self {
-        Track { file: file.to_owned(), frames, lost: 0, jumps: 0 }
+        Track { file: file.to_owned(), body: None, frames, lost: 0, jumps: 0 }
     }
 
     /// Returns the frames that show the robot.
@@ -91,8 +83,14 @@ impl Track {
 
     /// Returns the number of frames and of those excluded.
     pub fn report(&self) -> TrackReport {
-        let Track { file, frames, lost, jumps } = self;
-        TrackReport { file: file.clone(), frames: frames.len() + lost + jumps, lost: *lost, jumps: *jumps }
+        let Track { file, body, frames, lost, jumps } = self;
+        TrackReport {
+            file: file.clone(),
+            body: body.clone(),
+            frames: frames.len() + lost + jumps,
+            lost: *lost,
+            jumps: *jumps,
+        }
     }
 
     /// Returns the robot's cumulative motion.
@@ -154,17 +152,16 @@ mod tests {
     use super::*;
     use mindgap_built_in_robot::default_robot;
 
-    fn read(text: &str) -> Result<Track> {
-        let folder = tempfile::tempdir().expect("a folder");
-        let file = folder.path().join("track.csv");
-        mindgap_files::write(&file, text)?;
-        Track::read(&file, &Units::default(), &default_robot())
+    fn track(frames: &[Option<[f64; 4]>]) -> Result<Track> {
+        let frame = |[t_ms, x, y, heading]: [f64; 4]| Frame { t_ms, pose: Pose::new(x, y, heading) };
+        let frames = frames.iter().map(|values| values.map(frame)).collect();
+        Track::of(Path::new("track.csv"), frames, &default_robot())
     }
 
     #[test]
     fn poses_are_interpolated_only_between_frames() {
-        let text = "time_s,x_m,y_m,heading_rad\n10,0.1,0.2,3.1\n10.1,0.11,0.2,-3.1\n11,0.2,0.2,\n11.5,0.21,0.2,3.0\n";
-        let track = read(text).expect("a track");
+        let frames = [[10_000.0, 10.0, 20.0, 3.1], [10_100.0, 11.0, 20.0, -3.1], [11_500.0, 21.0, 20.0, 3.0]].map(Some);
+        let track = track(&[frames[0], frames[1], None, frames[2]]).expect("a track");
         assert_eq!((track.frames.len(), track.lost, track.jumps), (3, 1, 0));
         let pose = track.at(10_050.0).pose().expect("seen");
         assert!((pose.position_cm.x - 10.5).abs() < 1e-9 && pose.heading_rad.abs() > 3.1, "{pose:?}");
@@ -176,26 +173,16 @@ mod tests {
 
     #[test]
     fn jump_there_and_back_is_removed() {
-        let frame = |i: usize| format!("{},{},50,0\n", 33 * i, if i == 7 { 140.0 } else { 20.0 + i as f64 });
-        let text = "t_ms,x_cm,y_cm,heading_deg\n".to_owned() + &(0..20).map(frame).collect::<String>();
-        let track = read(&text).expect("a track");
+        let x_cm = |i: usize| if i == 7 { 140.0 } else { 20.0 + i as f64 };
+        let frames: Vec<_> = (0..20).map(|i| Some([33.0 * i as f64, x_cm(i), 50.0, 0.0])).collect();
+        let track = track(&frames).expect("a track");
         assert_eq!((track.frames.len(), track.jumps), (19, 1));
     }
 
     #[test]
-    fn invalid_tracks_are_rejected() {
-        for (text, what) in [
-            ("", "no column"),
-            ("t_ms,x_cm,y_cm,heading_deg\n", "0 frame(s)"),
-            ("t_ms,x_cm,y_cm,heading_deg\n0,1,1,0\n0,1,1,0\n", "is not later than"),
-            ("t_ms,x_cm,y_cm,heading_deg\n0,1,far,0\n", ":2: y_cm = \"far\" is not a number"),
-            ("t_ms,x_cm,y_cm,heading_deg\n0,1,inf,0\n", ":2: y_cm = \"inf\" is not a number"),
-            ("t_ms,x_cm,y_cm\n0,1,1\n", ":1: no column for the heading"),
-            ("t,x,y,theta\n0,1,1,0\n", ":1: column t has no unit"),
-            ("t_ms,x_cm,x_mm,y_cm,heading_deg\n0,1,1,1,0\n", ":1: more than one column for x"),
-        ] {
-            let error = read(text).expect_err(text).to_string();
-            assert!(error.contains(what), "{text:?} gave {error}");
-        }
+    fn tracks_without_motion_in_time_are_rejected() {
+        let error = |frames: &[Option<[f64; 4]>]| track(frames).expect_err("rejected").to_string();
+        assert!(error(&[None, Some([0.0; 4])]).contains("1 frame(s)"));
+        assert!(error(&[Some([0.0; 4]); 2]).contains("is not later than"));
     }
 }

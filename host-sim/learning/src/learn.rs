@@ -16,3 +16,4 @@ pub mod scans;
 pub mod scatter;
 pub mod sensor_law;
 pub mod train;
+pub mod wheels;

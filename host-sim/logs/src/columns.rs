@@ -4,20 +4,38 @@ use std::path::Path;
 
 use csv::StringRecord;
 
+use super::range_sensor::{ECHO, Sensors, ULTRASONIC, column_of, sensor_of};
 use super::row::Row;
 use mindgap_foundations::error::{Error, Result};
 use mindgap_foundations::geometry::Pose;
 
 /// All known columns, starting with those that every run must have.
-pub const COLUMNS: [&str; 10] =
-    [TIME, "left", "right", "x_cm", "y_cm", "heading_deg", ECHO, "rot_left_deg", "rot_right_deg", "battery_mv"];
+pub const COLUMNS: [&str; 11] = [
+    TIME,
+    "left",
+    "right",
+    "x_cm",
+    "y_cm",
+    "heading_deg",
+    ECHO,
+    "rot_left_deg",
+    "rot_right_deg",
+    "battery_mv",
+    "gyro_deg_s",
+];
 /// Number of leading [`COLUMNS`] that every run must have.
 pub const REQUIRED: usize = 7;
 /// Number of leading [`COLUMNS`] that every run of a robot without a range sensor must have.
 pub const REQUIRED_WITHOUT_SENSOR: usize = 6;
+/// The columns of commands-*.csv.
+pub const COMMAND_COLUMNS: [&str; 3] = [COLUMNS[0], COLUMNS[1], COLUMNS[2]];
 const TIME: &str = "t_ms";
-/// The column whose cells may hold `inf` or `nan`.
-const ECHO: &str = "echo_cm";
+/// The columns of the tracked pose.
+const POSE: [&str; 3] = ["x_cm", "y_cm", "heading_deg"];
+/// Columns with which a robot measures its own motion.
+const WITNESSES: [&[&str]; 2] = [&["rot_left_deg", "rot_right_deg"], &["gyro_deg_s"]];
+/// Place of the column of the first range sensor in [`COLUMNS`]. The cells of range sensors may hold `inf` or `nan`.
+const FIRST_ECHO: usize = 6;
 /// Number of leading [`COLUMNS`] whose cells must not be empty.
 const NEVER_EMPTY: usize = 3;
 /// Largest magnitude of a number in a log.
@@ -27,35 +45,96 @@ const MAX_TIME_MS: f64 = 1e9;
 /// Upper limits of Unix times until the year 2100, with their units.
 const UNIX_TIME_UNITS: [(f64, &str); 4] = [(4.2e9, "s"), (4.2e12, "ms"), (4.2e15, "us"), (4.2e18, "ns")];
 
-/// The index in a file's header of each of [`COLUMNS`].
-pub struct Columns([Option<usize>; COLUMNS.len()]);
+/// Where columns are in a file's header.
+pub struct Columns {
+    /// The index of each of [`COLUMNS`].
+    indices: [Option<usize>; COLUMNS.len()],
+    /// The column of the first range sensor.
+    first_echo: String,
+    /// The columns of the further range sensors, with their index.
+    further: Vec<(String, Option<usize>)>,
+}
 
 impl Columns {
     /// Finds the columns in a header; `warn` receives a line for each unknown one.
     ///
     /// # Errors
     /// When `required` columns are missing or a column is duplicated.
-    pub fn find(path: &Path, header: &StringRecord, required: &[&str], warn: &mut impl FnMut(String)) -> Result<Self> {
-        let mut indices = [None; COLUMNS.len()];
+    pub fn find(
+        path: &Path,
+        header: &StringRecord,
+        required: &[&str],
+        sensors: &Sensors,
+        warn: &mut impl FnMut(String),
+    ) -> Result<Self> {
+        Columns::find_among(&COLUMNS, path, header, required, sensors, warn)
+    }
+
+    /// Finds those of the `known` columns, which are the first of [`COLUMNS`], and those of further range sensors.
+    ///
+    /// # Errors
+    /// As [`Columns::find`].
+    pub fn find_among(
+        known: &[&str],
+        path: &Path,
+        header: &StringRecord,
+        required: &[&str],
+        sensors: &Sensors,
+        warn: &mut impl FnMut(String),
+    ) -> Result<Self> {
+        let further = sensors.further().iter().map(|sensor| (column_of(&sensor.name), None)).collect();
+        let mut columns = Columns { indices: [None; COLUMNS.len()], first_echo: column_of(sensors.first()), further };
         let mut unknown = Vec::new();
         for (i, name) in header.iter().enumerate() {
-            match COLUMNS.iter().position(|c| *c == name) {
+            match columns.place(name, known.len()) {
                 None => unknown.push(name),
-                Some(c) if indices[c].is_some() => {
+                Some(place) if place.is_some() => {
                     return Err(Error::at_line(path, 1, format!("column {name} is duplicated")));
                 }
-                Some(c) => indices[c] = Some(i),
+                Some(place) => *place = Some(i),
             }
         }
-        let is_found = |name: &&&str| COLUMNS.iter().zip(indices).any(|(c, index)| c == *name && index.is_some());
-        let missing: Vec<&str> = required.iter().filter(|name| !is_found(name)).copied().collect();
+        let is_found = |name: &&&str| COLUMNS.iter().zip(columns.indices).any(|(c, i)| c == *name && i.is_some());
+        // A robot that measures its own motion need not be tracked; a part of a pose is a mistake.
+        let measures_itself = WITNESSES.iter().any(|columns| columns.iter().all(|name| is_found(&name)));
+        let is_untracked = measures_itself && !POSE.iter().any(|name| is_found(&name));
+        let is_needed = |name: &&&str| !(is_untracked && POSE.contains(name));
+        let missing: Vec<&str> = required.iter().filter(|name| !is_found(name)).filter(is_needed).copied().collect();
         if !missing.is_empty() {
             return Err(Error::at_line(path, 1, missing_columns(&missing, header, &unknown)));
         }
         for name in unknown {
-            warn(format!("{}:1: unknown column {name:?} ignored", path.display()));
+            warn(format!("{}:1: {}", path.display(), ignored(name)));
         }
-        Ok(Columns(indices))
+        Ok(columns)
+    }
+
+    /// Returns the place for the index of a column, if one of this name is among the first `count` of [`COLUMNS`].
+    fn place(&mut self, name: &str, count: usize) -> Option<&mut Option<usize>> {
+        let known = COLUMNS[..count].iter().enumerate().position(|(c, known)| match c {
+            FIRST_ECHO => self.first_echo == name,
+            _ => *known == name,
+        });
+        match known {
+            Some(c) => Some(&mut self.indices[c]),
+            None => self.further.iter_mut().find(|(further, _)| further == name).map(|(_, place)| place),
+        }
+    }
+
+    /// Returns whether each range sensor has a column, in their order.
+    pub fn have_echoes(&self) -> impl Iterator<Item = bool> {
+        std::iter::once(&self.indices[FIRST_ECHO]).chain(self.further.iter().map(|(_, i)| i)).map(Option::is_some)
+    }
+
+    /// Parses the readings of the further range sensors of a record, cm.
+    ///
+    /// # Errors
+    /// When a cell is invalid; the message says what to write instead.
+    pub fn further_cm(&self, record: &StringRecord) -> impl Iterator<Item = std::result::Result<Option<f64>, String>> {
+        self.further.iter().map(|(name, index)| {
+            let cell = index.and_then(|i| record.get(i)).filter(|cell| !cell.is_empty());
+            cell.map(|cell| number(FIRST_ECHO, name, cell).and_then(|cm| reading(name, cm))).transpose()
+        })
     }
 
     /// Parses a record as a row.
@@ -65,10 +144,13 @@ impl Columns {
     pub fn row(&self, record: &StringRecord) -> std::result::Result<Row, String> {
         let mut v = [None; COLUMNS.len()];
         for (c, name) in COLUMNS.iter().enumerate() {
-            let Some(cell) = self.0[c].and_then(|i| record.get(i)).filter(|cell| !cell.is_empty()) else { continue };
-            v[c] = Some(number(c, name, cell)?);
+            let Some(cell) = self.indices[c].and_then(|i| record.get(i)).filter(|cell| !cell.is_empty()) else {
+                continue;
+            };
+            v[c] = Some(number(c, if c == FIRST_ECHO { &self.first_echo } else { name }, cell)?);
         }
-        let [t_ms, left, right, x_cm, y_cm, heading_deg, echo_cm, rot_left_deg, rot_right_deg, battery_mv] = v;
+        let [t_ms, left, right, x_cm, y_cm, heading_deg, echo_cm, rot_left_deg, rot_right_deg, battery_mv, gyro_deg_s] =
+            v;
         let required = |value: Option<f64>, name: &str| value.ok_or(format!("{name} is empty"));
         let command = |value: Option<f64>, name: &str| match required(value, name)? {
             v if v.abs() <= 100.0 => Ok(v),
@@ -79,9 +161,7 @@ impl Columns {
             (None, None, None) => None,
             _ => return Err("x_cm, y_cm and heading_deg must be all given or all empty".into()),
         };
-        if let Some(echo_cm) = echo_cm.filter(|e| *e < 0.0) {
-            return Err(format!("echo_cm = {echo_cm} is negative; leave the cell empty if there was no echo"));
-        }
+        let echo_cm = echo_cm.map(|cm| reading(&self.first_echo, cm)).transpose()?;
         Ok(Row {
             t_ms: required(t_ms, TIME)?,
             left: command(left, "left")?,
@@ -91,7 +171,35 @@ impl Columns {
             rot_left_deg,
             rot_right_deg,
             battery_mv,
+            gyro_deg_s,
         })
+    }
+}
+
+/// Returns the names of all columns of a robot with these range sensors: [`COLUMNS`], then those of the further sensors.
+pub fn column_names(sensors: &Sensors) -> Vec<String> {
+    let first = column_of(sensors.first());
+    let known =
+        COLUMNS.iter().enumerate().map(|(c, name)| if c == FIRST_ECHO { first.clone() } else { (*name).into() });
+    known.chain(sensors.further().iter().map(|sensor| column_of(&sensor.name))).collect()
+}
+
+/// Returns a reading in cm that is possible.
+fn reading(column: &str, cm: f64) -> std::result::Result<f64, String> {
+    if cm >= 0.0 {
+        return Ok(cm);
+    }
+    Err(format!(
+        "{column} = {cm} is negative; leave the cell empty if there was no echo, and add 256 if a byte was read as signed"
+    ))
+}
+
+/// Says that a column is ignored, and why if it is that of a sensor.
+fn ignored(name: &str) -> String {
+    match sensor_of(name) {
+        None => format!("unknown column {name:?} ignored"),
+        Some(ULTRASONIC) => format!("column {name:?} ignored: robot.toml has no [ultrasonic]"),
+        Some(sensor) => format!("column {name:?} ignored: robot.toml has no range_sensor named {sensor:?}"),
     }
 }
 
@@ -108,7 +216,15 @@ pub fn cells(row: &Row) -> [Option<f64>; COLUMNS.len()] {
         row.rot_left_deg,
         row.rot_right_deg,
         row.battery_mv,
+        row.gyro_deg_s,
     ]
+}
+
+/// Formats a number with at most two decimals, the precision of trackers and sensors.
+pub fn two_decimals(value: f64) -> String {
+    let text = format!("{value:.2}");
+    let text = text.trim_end_matches('0').trim_end_matches('.');
+    if text == "-0" { "0".into() } else { text.into() }
 }
 
 /// Explains why columns are missing, as far as the header shows.
@@ -148,7 +264,7 @@ fn number(column: usize, name: &str, cell: &str) -> std::result::Result<f64, Str
     }
     // Some drivers write `inf` or `nan` for no echo. The inspection handles it as a huge number, so that all numbers
     // in a log are finite.
-    let number = if name == ECHO && !number.is_finite() { MAX_MAGNITUDE } else { number };
+    let number = if column == FIRST_ECHO && !number.is_finite() { MAX_MAGNITUDE } else { number };
     if !number.is_finite() || name != TIME && number.abs() > MAX_MAGNITUDE {
         let hint = if column < NEVER_EMPTY || number.is_finite() { "" } else { EMPTY };
         return Err(format!("{name} = {cell} is not a number that a robot could log{hint}"));
@@ -173,4 +289,23 @@ fn not_a_number(column: usize, name: &str, cell: &str) -> String {
         ""
     };
     format!("{name} = {cell:?} is not a number{hint}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn poses_may_be_absent_where_the_robot_measures_itself() {
+        let find = |header: &[&str]| {
+            let header = StringRecord::from(header.to_vec());
+            let path = Path::new("run-000.csv");
+            Columns::find(path, &header, &COLUMNS[..REQUIRED], &Sensors::default(), &mut |_| ()).is_ok()
+        };
+        let commands = [TIME, "left", "right", ECHO];
+        assert!(find(&[&commands, ["rot_left_deg", "rot_right_deg"].as_slice()].concat()));
+        assert!(find(&[&commands, ["gyro_deg_s"].as_slice()].concat()));
+        assert!(!find(&[&commands, ["rot_left_deg", "battery_mv"].as_slice()].concat()));
+        assert!(!find(&["left", "right", ECHO, "gyro_deg_s"]), "the time is needed");
+    }
 }

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use mindgap_core::controller::{Controller, InvalidController, TUPLES, Tuple};
+use mindgap_core::controller::{Controller, InvalidController, TUPLES, Tuple, When};
 use serde::{Deserialize, Serialize};
 use toml::Spanned;
 
@@ -15,6 +15,8 @@ use mindgap_foundations::error::{Error, Result};
 pub struct ControllerFile {
     /// The controller.
     pub controller: Controller,
+    /// The range sensor that each tuple asks; `None` for the robot's first.
+    pub sensors: [Option<String>; TUPLES],
     /// How it was evolved, if the file states it.
     pub origin: Option<Origin>,
 }
@@ -47,16 +49,18 @@ impl ControllerFile {
     /// When the file cannot be read or parsed, does not have exactly six tuples, or holds a number out of range.
     pub fn read(path: &Path) -> Result<Self> {
         let text = files::read_text(path)?;
-        let file: ControllerTable<Spanned<Tuple>> = files::from_toml(path, &text)?;
+        let file: ControllerTable<Spanned<TupleTable>> = files::from_toml(path, &text)?;
         let line = |tuple: usize| files::line_at(&text, file.tuple[tuple].span().start);
         let count = file.tuple.len();
-        let Ok(tuples) = <[Tuple; TUPLES]>::try_from(file.tuple.iter().map(|t| *t.get_ref()).collect::<Vec<_>>())
+        let Ok(tuples) = <[&TupleTable; TUPLES]>::try_from(file.tuple.iter().map(Spanned::get_ref).collect::<Vec<_>>())
         else {
             return Err(Error::in_file(path, format!("has {count} tuples; a controller has exactly {TUPLES}")));
         };
+        let sensors = tuples.map(|tuple| tuple.sensor.clone());
+        let tuples = tuples.map(TupleTable::tuple);
         let controller = Controller { step_ms: file.step_ms, max_steps: file.max_steps, tuples };
         let error = match controller.check() {
-            Ok(()) => return Ok(ControllerFile { controller, origin: file.origin }),
+            Ok(()) => return Ok(ControllerFile { controller, sensors, origin: file.origin }),
             Err(InvalidController::Speed(t)) => Error::at_line(path, line(t), "a speed lies outside -100..100"),
             Err(InvalidController::Threshold(t)) => {
                 Error::at_line(path, line(t), "the threshold lies outside 0..255 cm")
@@ -92,13 +96,44 @@ impl ControllerFile {
         )))
     }
 
+    /// Returns the range sensor that the controller asks on a robot with this first sensor.
+    ///
+    /// # Errors
+    /// When its tuples ask several: a run, a search and a program each read one.
+    pub fn sensor<'a>(&'a self, first: &'a str) -> Result<&'a str> {
+        let asked = self.sensors.each_ref().map(|sensor| sensor.as_deref().unwrap_or(first));
+        match asked.iter().position(|sensor| *sensor != asked[0]) {
+            None => Ok(asked[0]),
+            Some(other) => Err(Error::new(format!(
+                "tuple 1 asks range sensor {:?} and tuple {} asks {:?}: all tuples must ask the same one",
+                asked[0],
+                other + 1,
+                asked[other]
+            ))),
+        }
+    }
+
+    /// Checks that the controller asks the first range sensor of a robot.
+    ///
+    /// # Errors
+    /// When a tuple asks another.
+    pub fn check_asks(&self, first: &str) -> Result<()> {
+        match self.sensor(first)? {
+            asked if asked == first => Ok(()),
+            asked => Err(Error::new(format!(
+                "the controller asks range sensor {asked:?}, but the runs here are of the sensor {first:?}"
+            ))),
+        }
+    }
+
     /// Writes a controller.
     ///
     /// # Errors
     /// When the file cannot be written.
     pub fn write(&self, path: &Path) -> Result<()> {
         let Controller { step_ms, max_steps, tuples } = self.controller.clone();
-        let table = ControllerTable { step_ms, max_steps, tuple: tuples.to_vec(), origin: self.origin.clone() };
+        let tuple = tuples.iter().zip(&self.sensors).map(|(tuple, sensor)| TupleTable::of(tuple, sensor.clone()));
+        let table = ControllerTable { step_ms, max_steps, tuple: tuple.collect(), origin: self.origin.clone() };
         files::write(path, toml::to_string(&table).expect("numbers and text have a TOML form"))
     }
 }
@@ -126,4 +161,27 @@ struct ControllerTable<T> {
     tuple: Vec<T>,
     #[serde(skip_serializing_if = "Option::is_none")]
     origin: Option<Origin>,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct TupleTable {
+    left: i8,
+    right: i8,
+    when: When,
+    threshold_cm: i16,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    sensor: Option<String>,
+}
+
+impl TupleTable {
+    fn of(tuple: &Tuple, sensor: Option<String>) -> Self {
+        let Tuple { left, right, when, threshold_cm } = *tuple;
+        TupleTable { left, right, when, threshold_cm, sensor }
+    }
+
+    fn tuple(&self) -> Tuple {
+        let TupleTable { left, right, when, threshold_cm, .. } = *self;
+        Tuple { left, right, when, threshold_cm }
+    }
 }

@@ -5,8 +5,10 @@
 //! alternative explains decisively better how the commands moved the robot or how the readings fit the walls. A real robot,
 //! however faulty, follows its commands in sign and within a factor of two.
 //!
-//! Checks run in order: runs and clocks, units, readings, frames, single rows. Each sees the corrections of those before it.
+//! Checks run in order: runs and clocks, units, readings, frames, map, single rows, counters and gyro. Each sees the corrections
+//! of those before it.
 
+mod against_map;
 mod clocks;
 mod copies;
 mod echoes;
@@ -15,15 +17,19 @@ mod frames;
 mod frozen;
 mod headings;
 mod map;
+mod moved_walls;
 mod rest;
 mod segments;
+mod stuck;
 mod tolerance;
 mod track;
 mod units;
 mod viterbi;
+mod witnesses;
 
 pub use finding::{Finding, Handling, Part, RunRows};
 pub use frames::Orientation;
+pub use map::fit_to_walls;
 
 use crate::Logs;
 use mindgap_foundations::error::{Error, Result};
@@ -45,12 +51,25 @@ impl Inspection {
         checks.iter().for_each(|check| findings.extend(check(&mut logs)));
         findings.extend(echoes::units(&mut logs));
         findings.extend(echoes::no_echo_numbers(&mut logs));
-        findings.extend(frames::check(&logs));
-        // Checks of single rows presume that the track as a whole follows the commands.
+        findings.extend(stuck::check(&mut logs));
+        let frame = frames::check(&mut logs);
+        let fits = frame.iter().all(|found| found.withholds.is_empty());
+        findings.extend(frame);
+        findings.extend(units::scale(&logs));
+        // In another frame every path leaves the map.
+        let is_sound = fits && !findings.iter().any(|found| found.withholds.contains(&Part::Motion));
+        let against_map = if is_sound { against_map::check(&logs) } else { Vec::new() };
+        // Readings are compared with the map where frame, path and sensor are sound.
+        if against_map.is_empty() && findings.iter().all(|found| found.withholds.is_empty()) {
+            findings.extend(moved_walls::check(&logs));
+        }
+        findings.extend(against_map);
+        // Checks of single rows and of counters presume that the track as a whole follows the commands.
         if !findings.iter().any(|found| found.withholds.contains(&Part::Motion)) {
             let checks: [fn(&mut Logs) -> Vec<Finding>; 5] =
                 [frozen::check, rest::starts_moving, rest::moves_at_zero_command, headings::check, track::check];
             checks.iter().for_each(|check| findings.extend(check(&mut logs)));
+            findings.extend(witnesses::check(&mut logs));
         }
         Inspection { logs, findings }
     }
@@ -65,6 +84,16 @@ impl Inspection {
         }
         self.findings.iter().map(Finding::line).for_each(warn);
         Ok(self.logs)
+    }
+
+    /// Removes all readings if nothing but them must not be compared; the findings then withhold nothing.
+    pub(super) fn silence_unsound(&mut self) {
+        if self.withheld(Part::Motion).is_none() && self.withheld(Part::Sonar).is_some() {
+            self.logs.runs.iter_mut().for_each(|run| run.rows.edit_each(|row| row.echo_cm = None));
+            for found in self.findings.iter_mut().filter(|found| !found.withholds.is_empty()) {
+                (found.withholds, found.handling) = (&[], Handling::Excluded);
+            }
+        }
     }
 
     /// Returns why the logs must not be used for training, if a defect could not be handled.

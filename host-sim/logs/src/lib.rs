@@ -4,8 +4,12 @@
 //! the [`samples`] extracted from it.
 
 mod columns;
+pub mod commands;
 pub mod controller_file;
+pub mod heard;
 pub mod inspection;
+mod mixed_rows;
+pub mod range_sensor;
 pub mod readings;
 mod resample;
 pub mod robot;
@@ -14,26 +18,34 @@ pub mod rows;
 pub mod run;
 pub mod samples;
 pub mod scene;
+pub mod sessions;
 pub mod tables;
 mod termination;
+mod ultrasonic;
 pub mod world_script;
 
-use std::fs;
 use std::path::Path;
+use std::sync::Arc;
 
-pub use robot::{Robot, Ultrasonic};
+pub use commands::{CommandChange, CommandChanges};
+pub use robot::Robot;
 pub use row::Row;
 pub use rows::Rows;
 pub use run::Run;
 pub use scene::Scene;
 use serde::{Deserialize, Serialize};
 pub use termination::Termination;
+pub use ultrasonic::Ultrasonic;
 
 use mindgap_files as files;
 use mindgap_foundations::error::{Error, Result};
 
 /// Largest relative deviation of the median step time from `step_ms`.
 const STEP_TOLERANCE: f64 = 0.2;
+
+/// Rows differ from the means of a run's commands by less than this: times in whole milliseconds move the mean of a full
+/// reversal by half a percent at 400 ms, at both ends of a row.
+const MEANS_WITHIN: f64 = 2.0;
 
 /// A robot, the scene it drove in, and its runs.
 #[derive(Clone, Debug, PartialEq)]
@@ -50,15 +62,20 @@ pub struct Logs {
 #[derive(Serialize, Deserialize)]
 pub struct LogFiles(Vec<(String, String)>);
 
+impl FromIterator<(String, String)> for LogFiles {
+    fn from_iter<I: IntoIterator<Item = (String, String)>>(files: I) -> Self {
+        LogFiles(files.into_iter().collect())
+    }
+}
+
 impl LogFiles {
     /// Writes the folder; see [`Logs::write`].
     ///
     /// # Errors
     /// When it cannot be written.
     pub fn write(&self, folder: &Path) -> Result<()> {
-        let is_own = |name: &str| is_run_file(name) || name == "robot.toml" || name == "scene.toml";
         let LogFiles(files) = self;
-        files::write_folder(folder, is_own, |new_folder| {
+        files::write_folder(folder, is_own_file, |new_folder| {
             files.iter().try_for_each(|(name, text)| files::write(&new_folder.join(name), text))
         })
     }
@@ -70,26 +87,54 @@ impl Logs {
     /// # Errors
     /// When a file cannot be read or parsed, when there is no run, or when [`check_step`](Self::check_step) fails.
     pub fn read(folder: &Path, mut warn: impl FnMut(String)) -> Result<Self> {
-        let robot = Robot::read(&folder.join("robot.toml"))?;
-        let scene = Scene::read(&folder.join("scene.toml"))?;
-        let listing = fs::read_dir(folder).map_err(|e| Error::in_file(folder, format!("cannot be read: {e}")))?;
-        let mut names: Vec<String> = listing
-            .filter_map(|entry| entry.ok()?.file_name().into_string().ok())
-            .filter(|name| is_run_file(name))
-            .collect();
-        names.sort();
-        if names.is_empty() {
-            return Err(Error::in_file(folder, "has no run-*.csv"));
+        if files::source::is_file(folder) {
+            let what = recording_to_import(folder).unwrap_or("are the arguments exchanged?".into());
+            return Err(Error::in_file(folder, format!("is a file, not a folder of logs: {what}")));
         }
-        let required = robot.required_columns();
+        let (robot, sensors) = Robot::read_all(&folder.join("robot.toml"))?;
+        let scene = Scene::read(&folder.join("scene.toml"))?;
+        let names = files::source::names(folder).map_err(|e| files::unreadable(folder, &e))?;
+        let (names, others): (Vec<String>, Vec<String>) = names.into_iter().partition(|name| is_run_file(name));
+        let similar: Vec<&str> = others.iter().map(String::as_str).filter(|name| is_like_run_file(name)).collect();
+        let passed_over =
+            || format!("passed over {}: runs are named run-NNN.csv, in lower case, unpacked", similar.join(", "));
+        if names.is_empty() {
+            let why = if similar.is_empty() { String::new() } else { format!("; {}", passed_over()) };
+            return Err(Error::in_file(folder, format!("has no run-*.csv{why}")));
+        }
+        if !similar.is_empty() {
+            warn(format!("{}: {}", folder.display(), passed_over()));
+        }
+        let required = robot.required_columns(&sensors);
+        let sensors = Arc::new(sensors);
         let mut warnings = Warnings::default();
         let read = |name: &String| {
             let path = folder.join(name);
-            Run::read_with(&path, required, |warning| warnings.add(&path, &warning))
+            Run::read_of(&path, required, &sensors, |warning| warnings.add(&path, &warning))
         };
-        let runs = names.iter().map(read).collect::<Result<Vec<_>>>()?;
+        let (mut runs, have_echoes): (Vec<Run>, Vec<_>) =
+            names.iter().map(read).collect::<Result<Vec<_>>>()?.into_iter().unzip();
+        for name in &others {
+            let Some(run) = commands::run_beside(name) else { continue };
+            let path = folder.join(name);
+            let driven = runs.iter_mut().find(|known| known.name == run);
+            let driven = driven.ok_or_else(|| Error::in_file(&path, format!("there is no {run}.csv beside it")))?;
+            read_commands(driven, &path, |warning| warnings.add(&path, &warning))?;
+        }
         warnings.report(&mut warn);
+        if !sensors.are_usual() {
+            heard::silence_incomplete(&mut runs, &have_echoes, |what| warn(format!("{}: {what}", folder.display())));
+        }
         Logs { robot, scene, runs }.checked(folder, warn)
+    }
+
+    /// Reads another run of the same robot.
+    ///
+    /// # Errors
+    /// As [`Run::read`].
+    pub fn read_further(&self, path: &Path) -> Result<Run> {
+        let sensors = Arc::new(self.sensors());
+        Run::read_of(path, self.robot.required_columns(&sensors), &sensors, |_| ()).map(|(run, _)| run)
     }
 
     /// Validates logs and drops readings of a robot without a sensor; messages name `folder`.
@@ -101,6 +146,11 @@ impl Logs {
             warn(format!("{}: has no [ultrasonic]: {count} readings ignored", robot.display()));
         }
         self.check_step(folder)?;
+        let placed = mixed_rows::take_apart(&mut self.runs, self.robot.step_ms);
+        if placed > 0 {
+            let what = "commands changed within rows, which hold means: the times of";
+            warn(format!("{}: {what} {placed} changes follow from both wheels", folder.display()));
+        }
         Ok(self)
     }
 
@@ -114,9 +164,11 @@ impl Logs {
 
     /// Returns the files of the folder.
     pub fn to_files(&self) -> LogFiles {
-        let runs = self.runs.iter().map(|run| (format!("{}.csv", run.name), run.to_text()));
-        let others = [("robot.toml".into(), self.robot.to_text()), ("scene.toml".into(), self.scene.to_text())];
-        LogFiles(others.into_iter().chain(runs).collect())
+        let others = [
+            ("robot.toml".into(), self.robot.to_text_with(&self.sensors())),
+            ("scene.toml".into(), self.scene.to_text()),
+        ];
+        others.into_iter().chain(self.runs.iter().flat_map(Run::files)).collect()
     }
 
     /// Returns the number of rows of all runs.
@@ -143,6 +195,28 @@ impl Logs {
         }
         Ok(())
     }
+}
+
+/// Returns the command that imports a recording; `None` if the file is not named like one.
+pub fn recording_to_import(file: &Path) -> Option<String> {
+    let name = file.file_name()?.to_string_lossy().to_lowercase();
+    let ends_with = |endings: &[&str]| endings.iter().any(|ending| name.ends_with(ending));
+    let way = match () {
+        () if ends_with(&[".mcap", ".db3", ".bag", ".mcap.zstd", ".mcap.zst"]) => "bag",
+        () if ends_with(&[".csv", ".csv.gz", ".tsv", ".tum", ".txt"]) => "streams",
+        () => return None,
+    };
+    Some(format!("import it with `mindgap import {way} {} --out logs`", file.display()))
+}
+
+/// Reads the commands of a run at their own times, which replace those of its rows.
+fn read_commands(run: &mut Run, path: &Path, mut warn: impl FnMut(String)) -> Result<()> {
+    let off = run.rows.set_changes(CommandChanges::read(path, &mut warn)?);
+    if off > MEANS_WITHIN {
+        let what = "left and right of the run are not the means of these commands, which are used instead";
+        warn(format!("{}: {what}", path.display()));
+    }
+    Ok(())
 }
 
 /// Removes a run's readings and returns how many there were.
@@ -173,6 +247,18 @@ impl Warnings {
     }
 }
 
+/// Returns whether a file of this name in a folder of logs is part of them.
+pub fn is_own_file(name: &str) -> bool {
+    is_run_file(name) || commands::run_beside(name).is_some() || name == "robot.toml" || name == "scene.toml"
+}
+
 fn is_run_file(name: &str) -> bool {
     name.starts_with("run-") && name.ends_with(".csv")
+}
+
+/// Returns whether a file that is not a run's may be meant as one.
+fn is_like_run_file(name: &str) -> bool {
+    let lower = name.to_lowercase();
+    let is_table = [".csv", ".csv.gz", ".csv.zip", ".tsv", ".txt"].iter().any(|ending| lower.ends_with(ending));
+    lower.starts_with("run") && is_table
 }

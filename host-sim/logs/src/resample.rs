@@ -1,11 +1,13 @@
 //! Resamples logs to longer steps, since motion between closely spaced rows vanishes in the tracker's noise.
 
-use super::{Logs, Row, Run};
+use std::sync::Arc;
+
+use super::{Logs, Row, Rows, Run};
 use mindgap_foundations::geometry::{Pose, wrap_rad};
 
 impl Logs {
     /// Returns the logs with rows every `step_ms`, which must be at least their present step. Commands are averaged over the step,
-    /// poses interpolated between their neighbours, and a reading is the latest one no older than a present step. Runs shorter
+    /// poses and rotation counters interpolated between their neighbours, and a reading is the latest one no older than a present step. Runs shorter
     /// than two such steps are dropped.
     pub fn resampled(&self, step_ms: f64) -> Logs {
         let mut logs = Logs { robot: self.robot, scene: self.scene.clone(), runs: Vec::new() };
@@ -33,16 +35,31 @@ fn resampled_run(run: &Run, step_ms: f64, usual_ms: f64) -> Run {
         let (before, after) = (run.rows.at(at), run.rows.get(at + 1));
         let [left, right] = mean_command(run, t_ms, t_ms + step_ms);
         let is_fresh = t_ms - before.t_ms < usual_ms;
-        Row {
+        let resampled = Row {
             t_ms,
             left,
             right,
             pose: pose(&before, after, t_ms, usual_ms),
             echo_cm: before.echo_cm.filter(|_| is_fresh),
+            rot_left_deg: between(&before, after, t_ms, |row| row.rot_left_deg),
+            rot_right_deg: between(&before, after, t_ms, |row| row.rot_right_deg),
             ..before
-        }
+        };
+        (resampled, at)
     };
-    Run { name: run.name.clone(), rows: (0..=steps).map(row).collect() }
+    let mut rows = Rows::of(Arc::new(run.rows.sensors().clone()));
+    for step in 0..=steps {
+        let (row, at) = row(step);
+        let is_fresh = row.t_ms - run.rows.at(at).t_ms < usual_ms;
+        rows.push(row);
+        for sensor in 0..run.rows.sensors().further().len() {
+            rows.set_further_cm(sensor, step, run.rows.further_cm(sensor, at).filter(|_| is_fresh));
+        }
+    }
+    if let Some(changes) = run.rows.changes() {
+        rows.set_changes(changes.clone());
+    }
+    Run { name: run.name.clone(), rows }
 }
 
 /// Returns the time-weighted mean of the commands between two times.
@@ -56,6 +73,13 @@ fn mean_command(run: &Run, from_ms: f64, to_ms: f64) -> [f64; 2] {
         sum = [sum[0] + held_ms * row.left, sum[1] + held_ms * row.right];
     }
     sum.map(|s| s / (to_ms - from_ms))
+}
+
+/// Interpolates a number that rises and falls steadily; `None` if a neighbour lacks it.
+fn between(before: &Row, after: Option<Row>, t_ms: f64, number: impl Fn(&Row) -> Option<f64>) -> Option<f64> {
+    let from = number(before)?;
+    let Some(after) = after.filter(|_| t_ms > before.t_ms) else { return Some(from) };
+    Some(from + (t_ms - before.t_ms) / (after.t_ms - before.t_ms) * (number(&after)? - from))
 }
 
 /// Interpolates the pose at a time; `None` if a neighbour is missing or too far away.

@@ -2,17 +2,19 @@
 
 use std::path::Path;
 
-use glam::DVec2;
 use schemars::JsonSchema;
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize};
+use toml::Spanned;
 
 use super::columns::{COLUMNS, REQUIRED, REQUIRED_WITHOUT_SENSOR};
+use super::range_sensor::{RangeSensor, Sensors};
+use super::ultrasonic::Ultrasonic;
 use mindgap_files as files;
 use mindgap_foundations::error::{Error, Result};
 use mindgap_foundations::geometry::Pose;
 
-/// A differential-drive robot with one ultrasonic sensor or none.
+/// A differential-drive robot with one range sensor or none; of several it has the first, and [`Sensors`] has the others.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Robot {
@@ -26,25 +28,9 @@ pub struct Robot {
     pub step_ms: f64,
     /// Speed of a wheel's rim at command 100 with a fresh battery, cm/s.
     pub full_speed_cm_s: f64,
-    /// The ultrasonic sensor, if it has one.
+    /// The range sensor, if it has one: `[ultrasonic]`, or the first `[[range_sensor]]` where there is none.
     #[serde(default, deserialize_with = "possible_sensor", skip_serializing_if = "Option::is_none")]
     pub ultrasonic: Option<Ultrasonic>,
-}
-
-/// Mounting and range of the ultrasonic sensor.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Ultrasonic {
-    /// Distance ahead of the centre of the axle, cm.
-    pub x_cm: f64,
-    /// Distance to the left of the centre of the axle, cm.
-    pub y_cm: f64,
-    /// Direction of its axis, degrees counter-clockwise from straight ahead.
-    pub yaw_deg: f64,
-    /// Smallest reading, cm.
-    pub min_cm: f64,
-    /// Largest reading, cm.
-    pub max_cm: f64,
 }
 
 impl Robot {
@@ -61,7 +47,37 @@ impl Robot {
     /// # Errors
     /// As [`Robot::read`].
     pub fn parse(path: &Path, text: &str) -> Result<Self> {
-        let robot: Robot = files::from_toml(path, text)?;
+        Ok(Robot::parse_all(path, text)?.0)
+    }
+
+    /// Reads `robot.toml` with all its range sensors.
+    ///
+    /// # Errors
+    /// As [`Robot::read`].
+    pub fn read_all(path: &Path) -> Result<(Self, Sensors)> {
+        Robot::parse_all(path, &files::read_text(path)?)
+    }
+
+    /// Parses the text of `robot.toml` with all its range sensors; `path` is for messages.
+    ///
+    /// # Errors
+    /// As [`Robot::read`].
+    pub fn parse_all(path: &Path, text: &str) -> Result<(Self, Sensors)> {
+        let parsed = files::from_toml(path, text);
+        let is_scene = || ["[arena]", "[[obstacle]]", "[[wall]]", "[[start]]"].iter().any(|table| text.contains(table));
+        let file: RobotFile<Spanned<RangeSensor>> = parsed.map_err(|error| match is_scene() {
+            true => Error::in_file(path, "is a scene, not a robot: are --robot and --scene exchanged?"),
+            false => error,
+        })?;
+        let (ultrasonic, sensors) = Sensors::of_file(path, text, file.ultrasonic, file.range_sensor)?;
+        let robot = Robot {
+            wheel_diameter_cm: file.wheel_diameter_cm,
+            track_cm: file.track_cm,
+            body_radius_cm: file.body_radius_cm,
+            step_ms: file.step_ms,
+            full_speed_cm_s: file.full_speed_cm_s,
+            ultrasonic,
+        };
         let positive = [
             ("wheel_diameter_cm", robot.wheel_diameter_cm),
             ("track_cm", robot.track_cm),
@@ -72,7 +88,7 @@ impl Robot {
         if let Some((name, value)) = positive.iter().find(|(_, v)| !(*v > 0.0 && *v < 1e5)) {
             return Err(Error::in_file(path, format!("{name} = {value} must lie between 0 and 100000")));
         }
-        Ok(robot)
+        Ok((robot, sensors))
     }
 
     /// Returns the pose of the sensor on the robot at `pose`; of a robot without one, `pose`.
@@ -80,9 +96,10 @@ impl Robot {
         self.ultrasonic.map_or(*pose, |sensor| sensor.pose_on(pose))
     }
 
-    /// Returns the columns that its runs must have.
-    pub fn required_columns(&self) -> &'static [&'static str] {
-        &COLUMNS[..if self.ultrasonic.is_none() { REQUIRED_WITHOUT_SENSOR } else { REQUIRED }]
+    /// Returns the columns that its runs must have. What a `[[range_sensor]]` makes necessary is none: the others can be compared.
+    pub fn required_columns(&self, sensors: &Sensors) -> &'static [&'static str] {
+        let needs_echoes = self.ultrasonic.is_some() && sensors.are_usual();
+        &COLUMNS[..if needs_echoes { REQUIRED } else { REQUIRED_WITHOUT_SENSOR }]
     }
 
     /// Writes `robot.toml`.
@@ -95,8 +112,38 @@ impl Robot {
 
     /// Returns the text of `robot.toml`.
     pub fn to_text(&self) -> String {
-        toml::to_string(self).expect("numbers have a TOML form")
+        self.to_text_with(&Sensors::default())
     }
+
+    /// Returns the text of `robot.toml` with all these range sensors.
+    pub fn to_text_with(&self, sensors: &Sensors) -> String {
+        let (ultrasonic, range_sensor) = sensors.tables(self.ultrasonic);
+        let file = RobotFile {
+            wheel_diameter_cm: self.wheel_diameter_cm,
+            track_cm: self.track_cm,
+            body_radius_cm: self.body_radius_cm,
+            step_ms: self.step_ms,
+            full_speed_cm_s: self.full_speed_cm_s,
+            ultrasonic,
+            range_sensor,
+        };
+        toml::to_string(&file).expect("numbers and names have a TOML form")
+    }
+}
+
+/// The tables of `robot.toml`.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RobotFile<T> {
+    wheel_diameter_cm: f64,
+    track_cm: f64,
+    body_radius_cm: f64,
+    step_ms: f64,
+    full_speed_cm_s: f64,
+    #[serde(default, deserialize_with = "possible_sensor", skip_serializing_if = "Option::is_none")]
+    ultrasonic: Option<Ultrasonic>,
+    #[serde(default = "Vec::new", skip_serializing_if = "Vec::is_empty")]
+    range_sensor: Vec<T>,
 }
 
 /// Reads a sensor whose numbers are possible.
@@ -109,23 +156,6 @@ fn possible_sensor<'de, D: Deserializer<'de>>(from: D) -> std::result::Result<Op
     }
 }
 
-impl Ultrasonic {
-    fn is_possible(&self) -> bool {
-        let is_within = [self.x_cm, self.y_cm, self.yaw_deg, self.max_cm].iter().all(|v| v.abs() < 1e5);
-        is_within && (0.0..self.max_cm).contains(&self.min_cm)
-    }
-
-    /// Its least and its largest reading, cm.
-    pub fn range_cm(&self) -> [f64; 2] {
-        [self.min_cm, self.max_cm]
-    }
-
-    /// Returns the pose of the sensor on a robot at `robot`; its heading is the direction of the axis.
-    pub fn pose_on(&self, robot: &Pose) -> Pose {
-        robot.compose(&Pose { position_cm: DVec2::new(self.x_cm, self.y_cm), heading_rad: self.yaw_deg.to_radians() })
-    }
-}
-
 /// Two people who measure one robot agree to this share.
 const SAME: f64 = 0.02;
 
@@ -134,6 +164,18 @@ const SAME: f64 = 0.02;
 /// # Errors
 /// Names the first measurement that differs.
 pub fn same_robot(simulator: &Robot, logs: &Robot) -> Result<()> {
+    match first_difference(simulator, logs) {
+        Some((name, [a, b])) => Err(Error::new(format!(
+            "these are logs of another robot than the simulator's: {name} is {b} in the logs' robot.toml and {a} in the simulator; \
+             mend robot.toml, or train a simulator of this robot"
+        ))),
+        None => Ok(()),
+    }
+}
+
+/// Returns the first measurement in which two robots differ, with both values. The mounting of a sensor is compared where both
+/// have one.
+pub fn first_difference(one: &Robot, other: &Robot) -> Option<(&'static str, [f64; 2])> {
     let body = |r: &Robot| {
         vec![
             ("step_ms", r.step_ms),
@@ -144,17 +186,11 @@ pub fn same_robot(simulator: &Robot, logs: &Robot) -> Result<()> {
     };
     let mount =
         |s: &Ultrasonic| [("ultrasonic.x_cm", s.x_cm), ("ultrasonic.y_cm", s.y_cm), ("ultrasonic.yaw_deg", s.yaw_deg)];
-    let (mut ours, mut theirs) = (body(simulator), body(logs));
-    // The mounting of a sensor is compared where both have one.
-    if let (Some(a), Some(b)) = (&simulator.ultrasonic, &logs.ultrasonic) {
+    let (mut ours, mut theirs) = (body(one), body(other));
+    if let (Some(a), Some(b)) = (&one.ultrasonic, &other.ultrasonic) {
         ours.extend(mount(a));
         theirs.extend(mount(b));
     }
-    match ours.into_iter().zip(theirs).find(|((_, a), (_, b))| (a - b).abs() > SAME * a.abs().max(1.0)) {
-        Some(((name, a), (_, b))) => Err(Error::new(format!(
-            "these are logs of another robot than the simulator's: {name} is {b} in the logs' robot.toml and {a} in the simulator; \
-             mend robot.toml, or train a simulator of this robot"
-        ))),
-        None => Ok(()),
-    }
+    let mut pairs = ours.into_iter().zip(theirs).map(|((name, a), (_, b))| (name, [a, b]));
+    pairs.find(|(_, [a, b])| (a - b).abs() > SAME * a.abs().max(1.0))
 }

@@ -21,6 +21,8 @@ pub struct Row {
     pub rot_right_deg: Option<f64>,
     /// Battery voltage, millivolts.
     pub battery_mv: Option<f64>,
+    /// Yaw rate measured on the robot, counter-clockwise positive, degrees per second.
+    pub gyro_deg_s: Option<f64>,
 }
 
 impl Row {

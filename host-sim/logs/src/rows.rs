@@ -4,10 +4,13 @@ mod column;
 
 use std::fmt;
 use std::ops::Range;
+use std::sync::Arc;
 
 use glam::DVec2;
 
 use self::column::{Column, Unit};
+use super::commands::CommandChanges;
+use super::range_sensor::Sensors;
 use super::row::Row;
 use mindgap_foundations::geometry::Pose;
 
@@ -25,9 +28,52 @@ pub struct Rows {
     rot_left_deg: Column,
     rot_right_deg: Column,
     battery_mv: Column,
+    gyro_deg_s: Column,
+    changes: Option<CommandChanges>,
+    sensors: Arc<Sensors>,
+    /// Readings of the further range sensors, in their order.
+    further: Vec<Column>,
 }
 
 impl Rows {
+    /// Returns no rows yet, of a robot with these range sensors.
+    pub fn of(sensors: Arc<Sensors>) -> Self {
+        Rows::default().of_sensors(sensors)
+    }
+
+    /// Returns the rows of a robot with these range sensors; the readings so far are those of the first.
+    pub fn of_sensors(self, sensors: Arc<Sensors>) -> Self {
+        let further = vec![Column::new(Unit::AsWritten); sensors.further().len()];
+        Rows { sensors, further, ..self }
+    }
+
+    /// Returns the range sensors of the robot.
+    pub fn sensors(&self) -> &Sensors {
+        &self.sensors
+    }
+
+    /// Returns the reading of a further range sensor at a row, cm; `None` if it produced no value.
+    pub fn further_cm(&self, sensor: usize, row: usize) -> Option<f64> {
+        self.further.get(sensor)?.get(row)
+    }
+
+    /// Sets the reading of a further range sensor at a row, cm.
+    ///
+    /// # Panics
+    /// If there is no such sensor.
+    pub fn set_further_cm(&mut self, sensor: usize, row: usize, reading_cm: Option<f64>) {
+        self.further[sensor].set(row, reading_cm);
+    }
+
+    /// Returns the rows with the readings of one further range sensor alone.
+    ///
+    /// # Panics
+    /// If there is no such sensor.
+    pub fn heard_by(&self, sensor: usize) -> Self {
+        let echo_cm = self.further[sensor].clone();
+        Rows { echo_cm, sensors: Arc::default(), further: Vec::new(), ..self.clone() }
+    }
+
     /// Returns the number of rows.
     pub fn len(&self) -> usize {
         self.len
@@ -60,6 +106,7 @@ impl Rows {
             rot_left_deg: self.rot_left_deg.get(row),
             rot_right_deg: self.rot_right_deg.get(row),
             battery_mv: self.battery_mv.get(row),
+            gyro_deg_s: self.gyro_deg_s.get(row),
         }
     }
 
@@ -96,6 +143,58 @@ impl Rows {
     /// Iterates over pairs of consecutive rows.
     pub fn pairs(&self) -> impl Iterator<Item = [Row; 2]> + '_ {
         (1..self.len).map(|end| [self.at(end - 1), self.at(end)])
+    }
+
+    /// Returns the commands at their own times, where these are known. Those of the rows are then their means.
+    pub fn changes(&self) -> Option<&CommandChanges> {
+        self.changes.as_ref()
+    }
+
+    /// Returns the command that holds when the first row begins: none, unless one is known to be older.
+    pub fn command_before_start(&self) -> [f64; 2] {
+        let before = self.changes.as_ref().zip(self.first()).and_then(|(changes, row)| changes.before(row.t_ms).last());
+        before.map_or([0.0; 2], |change| change.command)
+    }
+
+    /// Returns when the step of row `row` ends, ms; that of the last row would last as long as the one before.
+    pub fn end_ms(&self, row: usize) -> f64 {
+        let t_ms = |row: usize| self.t_ms.get(row).unwrap_or_default();
+        if row + 1 < self.len { t_ms(row + 1) } else { 2.0 * t_ms(row) - t_ms(row.saturating_sub(1)) }
+    }
+
+    /// Sets the commands at their own times, and those of the rows to their means. Returns the largest difference from
+    /// those that the rows had.
+    pub fn set_changes(&mut self, changes: CommandChanges) -> f64 {
+        let mut largest = 0.0_f64;
+        for k in 0..self.len {
+            let (row, end_ms) = (self.at(k), self.end_ms(k));
+            if end_ms > row.t_ms {
+                let [left, right] = changes.mean(row.t_ms, end_ms);
+                largest = largest.max((left - row.left).abs()).max((right - row.right).abs());
+                self.set(k, Row { left, right, ..row });
+            }
+        }
+        self.changes = Some(changes);
+        largest
+    }
+
+    /// Multiplies all times, also those of commands.
+    pub fn scale_times(&mut self, factor: f64) {
+        self.edit_each(|row| row.t_ms *= factor);
+        self.changes.iter_mut().for_each(|changes| changes.edit_each(|change| change.t_ms *= factor));
+    }
+
+    /// Multiplies all commands.
+    pub fn scale_commands(&mut self, factor: f64) {
+        self.edit_each(|row| (row.left, row.right) = (row.left * factor, row.right * factor));
+        let scale = |command: &mut [f64; 2]| *command = command.map(|command| command * factor);
+        self.changes.iter_mut().for_each(|changes| changes.edit_each(|change| scale(&mut change.command)));
+    }
+
+    /// Returns the first `rows` rows, or all if there are fewer.
+    pub fn beginning(&self, rows: usize) -> Rows {
+        let first: Rows = self.between(0..rows.min(self.len)).collect();
+        Rows { changes: self.changes.clone(), ..first }
     }
 
     /// Returns the index of the first row later than `t_ms`, or `self.len()`.
@@ -149,12 +248,12 @@ impl Rows {
     /// Keeps only the first `rows` rows.
     pub fn truncate(&mut self, rows: usize) {
         self.len = self.len.min(rows);
-        self.columns().into_iter().for_each(|column| column.truncate(rows));
+        self.columns().for_each(|column| column.truncate(rows));
     }
 
     /// Releases spare capacity.
     pub fn shrink(&mut self) {
-        self.columns().into_iter().for_each(Column::shrink);
+        self.columns().for_each(Column::shrink);
     }
 
     fn set(&mut self, at: usize, row: Row) {
@@ -168,10 +267,11 @@ impl Rows {
         self.rot_left_deg.set(at, row.rot_left_deg);
         self.rot_right_deg.set(at, row.rot_right_deg);
         self.battery_mv.set(at, row.battery_mv);
+        self.gyro_deg_s.set(at, row.gyro_deg_s);
     }
 
-    fn columns(&mut self) -> [&mut Column; 10] {
-        [
+    fn columns(&mut self) -> impl Iterator<Item = &mut Column> {
+        let first = [
             &mut self.t_ms,
             &mut self.left,
             &mut self.right,
@@ -182,7 +282,9 @@ impl Rows {
             &mut self.rot_left_deg,
             &mut self.rot_right_deg,
             &mut self.battery_mv,
-        ]
+            &mut self.gyro_deg_s,
+        ];
+        first.into_iter().chain(&mut self.further)
     }
 }
 
@@ -201,6 +303,10 @@ impl Default for Rows {
             rot_left_deg: column(),
             rot_right_deg: column(),
             battery_mv: column(),
+            gyro_deg_s: column(),
+            changes: None,
+            sensors: Arc::default(),
+            further: Vec::new(),
         }
     }
 }
@@ -215,7 +321,7 @@ impl FromIterator<Row> for Rows {
 
 impl PartialEq for Rows {
     fn eq(&self, other: &Self) -> bool {
-        self.len == other.len && self.iter().eq(other)
+        self.len == other.len && self.changes == other.changes && self.iter().eq(other)
     }
 }
 

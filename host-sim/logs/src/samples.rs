@@ -1,11 +1,13 @@
 //! Training samples extracted from logs: motion and sonar (paper, section VI).
 
-use crate::{Logs, Run};
+use std::f64::consts::PI;
+
+use crate::{Logs, Robot, Run};
 use mindgap_foundations::geometry::cast;
 use mindgap_foundations::motion::Motion;
 
-/// A step longer than this multiple of `step_ms` spans missing rows and is skipped.
-const LONGEST_STEP: f64 = 1.5;
+/// A step longer than this multiple of `step_ms` spans missing rows and is skipped, and so is the step after it.
+pub const LONGEST_STEP: f64 = 1.5;
 
 /// A row of logs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -86,7 +88,7 @@ fn step(step_ms: f64, run: usize, r: &Run, row: usize) -> Option<MotionSample> {
     let (begin, end) = (r.rows.at(row), r.rows.at(row + 1));
     let duration_ratio = (end.t_ms - begin.t_ms) / step_ms;
     let (from, to) = (begin.pose?, end.pose?);
-    if duration_ratio > LONGEST_STEP {
+    if duration_ratio > LONGEST_STEP || follows_gap(step_ms, r, row) {
         return None;
     }
     let change = from.relative(&to);
@@ -99,6 +101,24 @@ fn step(step_ms: f64, run: usize, r: &Run, row: usize) -> Option<MotionSample> {
         lateral_cm: change.position_cm.y / duration_ratio,
         turn_rad: change.heading_rad / duration_ratio,
     })
+}
+
+/// Returns whether rows are missing before a row. What was commanded there is unknown, and it still acts on the step that follows.
+pub fn follows_gap(step_ms: f64, run: &Run, row: usize) -> bool {
+    row > 0 && run.rows.at(row).t_ms - run.rows.at(row - 1).t_ms > LONGEST_STEP * step_ms
+}
+
+/// Returns how far the rims of the left and the right wheel turned in the step from a row, cm, by their rotation counters,
+/// scaled to the nominal step; `None` without counters at both ends, and where rows are missing in it or before it.
+pub fn wheels_cm(robot: &Robot, run: &Run, row: usize) -> Option<[f64; 2]> {
+    let (begin, end) = (run.rows.get(row)?, run.rows.get(row + 1)?);
+    let duration_ratio = (end.t_ms - begin.t_ms) / robot.step_ms;
+    let cm_per_deg = PI * robot.wheel_diameter_cm / 360.0;
+    let turned_cm = |from: Option<f64>, to: Option<f64>| Some((to? - from?) * cm_per_deg / duration_ratio);
+    let left_cm = turned_cm(begin.rot_left_deg, end.rot_left_deg)?;
+    let right_cm = turned_cm(begin.rot_right_deg, end.rot_right_deg)?;
+    let is_step = duration_ratio <= LONGEST_STEP && !follows_gap(robot.step_ms, run, row);
+    is_step.then_some([left_cm, right_cm])
 }
 
 /// Returns all rows with a tracked pose at which the sensor, if there is one, faced a wall or an edge.

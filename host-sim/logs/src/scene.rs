@@ -39,7 +39,11 @@ impl Scene {
     /// # Errors
     /// As [`Scene::read`].
     pub fn parse(path: &Path, text: &str) -> Result<Self> {
-        let file: SceneFile = files::from_toml(path, text)?;
+        let file: SceneFile =
+            files::from_toml(path, text).map_err(|error| match text.contains("wheel_diameter_cm") {
+                true => Error::in_file(path, "is a robot, not a scene: are --robot and --scene exchanged?"),
+                false => error,
+            })?;
         let at = |byte: usize, what: &str| Error::at_line(path, files::line_at(text, byte), what);
         let mut scene = Scene::default();
         if let Some(arena) = file.arena {

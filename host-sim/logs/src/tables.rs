@@ -4,7 +4,8 @@ use std::path::Path;
 
 use csv::Writer;
 
-use super::columns::{COLUMNS, cells};
+use super::columns::column_names;
+use super::range_sensor::Sensors;
 use super::{Logs, Robot, Run, Scene};
 use mindgap_foundations::error::{Error, Result};
 
@@ -28,7 +29,7 @@ impl Logs {
         if tables.is_empty() {
             return Err(Error::in_file(Path::new(IN_MEMORY), "there is no run"));
         }
-        let required = robot.required_columns();
+        let required = robot.required_columns(&Sensors::default());
         let read = |table: &Table| Run::parse(Path::new(&table.name), &table.text()?, required, &mut warn);
         let runs = tables.iter().map(read).collect::<Result<_>>()?;
         Logs { robot, scene, runs }.checked(Path::new(IN_MEMORY), warn)
@@ -38,10 +39,10 @@ impl Logs {
 impl Table {
     /// Converts a run to a table; a column is included if any row has a value.
     pub fn from_run(run: &Run) -> Self {
-        let rows: Vec<_> = run.rows.iter().map(|row| cells(&row)).collect();
+        let (names, rows) = (column_names(run.rows.sensors()), run.cells().collect::<Vec<_>>());
         let column = |c: usize| rows.iter().map(|row| row[c].unwrap_or(f64::NAN)).collect();
-        let written = (0..COLUMNS.len()).filter(|c| rows.iter().any(|row| row[*c].is_some()));
-        Table { name: run.name.clone(), columns: written.map(|c| (COLUMNS[c].into(), column(c))).collect() }
+        let written = (0..names.len()).filter(|c| rows.iter().any(|row| row[*c].is_some()));
+        Table { name: run.name.clone(), columns: written.map(|c| (names[c].clone(), column(c))).collect() }
     }
 
     /// Returns the table as the text of a file at full precision, so that cells are validated in one place.

@@ -12,12 +12,15 @@ pub mod catalogue;
 pub mod chain;
 pub mod context;
 pub mod drive_filter;
+pub mod lagging_heading;
 pub mod own;
 pub mod parameter;
+pub mod pieces;
 pub mod scales;
 pub mod signs;
 pub mod twist;
 pub mod variant;
+pub mod witness;
 
 pub use catalogue::{CATALOGUE, Candidate};
 pub use context::StepContext;

@@ -10,8 +10,10 @@ pub mod ensemble;
 pub mod environment;
 mod first_echo;
 pub mod fixed_point;
+pub mod further_sensor;
 pub mod kinematic;
 mod known_steps;
+pub mod monitor;
 pub mod motion;
 pub mod nominal;
 pub mod residuals;
@@ -20,6 +22,7 @@ pub mod rollout_report;
 pub mod room;
 pub mod textbook;
 
+use std::fmt;
 use std::path::Path;
 
 use mindgap_core::network::Network;
@@ -31,6 +34,7 @@ use crate::effects::chain::EffectChain;
 use crate::effects::drive_filter::DriveFilter;
 use crate::sonar::{FirstEchoLaw, SensorLaw};
 use ensemble::{Ensemble, Posterior, Robots};
+use further_sensor::FurtherSensor;
 use mindgap_files as files;
 use mindgap_foundations::error::{Error, Result};
 use mindgap_logs::Robot;
@@ -51,31 +55,36 @@ pub struct Simulator {
     pub origin: Origin,
     /// The robot whose logs it was learned from.
     pub robot: Robot,
-    /// Least and largest motor command in those logs; networks say nothing of commands outside.
+    /// Name of its range sensor; none of `[ultrasonic]`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sensor: Option<String>,
+    /// Smallest and largest motor command in those logs; the networks hold for no commands outside.
     pub commands: [f32; 2],
-    /// The filter behind which the motion networks see commands: that of a robot which takes more than a step to respond.
+    /// Filter of the commands in front of the motion networks, if the robot takes more than a step to respond.
     #[serde(default, skip_serializing_if = "DriveFilter::is_none")]
     pub filter: DriveFilter,
     /// Turn to the left in a step, degrees.
     pub turn: Option<Learned<4>>,
-    /// Way forward in a step, cm.
+    /// Forward motion in a step, cm.
     pub forward: Option<Learned<4>>,
-    /// Way to the left in a step, cm.
+    /// Motion to the left in a step, cm.
     pub lateral: Option<Learned<4>>,
     /// Probability that the sensor produces a value.
     pub echo_probability: Option<Learned<2>>,
-    /// The value it then produces, cm.
+    /// The reading if the sensor produces one, cm.
     pub echo_value: Option<Learned<2>>,
     /// The first-echo law of the sensor: its third model, beside the two networks and the reference's beam.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub first_echo: Option<FirstEchoLaw>,
     /// A constant wrong reading that comes now and then, if there is one.
     pub constant_reading: Option<ConstantReading>,
-    /// What the training logs say beyond the networks: the yardstick of the gap.
+    /// The range sensors beyond the first.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub further: Vec<FurtherSensor>,
+    /// Reference model fitted to the same logs, against which a diagnosis measures the gap.
     #[serde(default)]
     pub reference: Option<NominalModel>,
-    /// Epistemic uncertainty of the robot's motion given those logs and the runs since. Earlier files call it "ensemble",
-    /// which held no noise: it is ignored.
+    /// Epistemic uncertainty about the robot's motion, given those logs and the runs since.
     #[serde(default, skip_serializing_if = "Option::is_none", rename = "robots")]
     pub ensemble: Option<Ensemble>,
     /// What the same logs give with the sizes of the paper's Table I, when these networks have others.
@@ -102,11 +111,11 @@ pub enum Noise {
 pub struct Origin {
     /// Version of the program.
     pub version: String,
-    /// Which trainer.
+    /// Name of the trainer.
     pub trainer: String,
     /// Its seed.
     pub seed: u64,
-    /// Runs that it was learned from.
+    /// Number of runs that it was learned from.
     pub runs: usize,
 }
 
@@ -130,12 +139,21 @@ pub struct Missing {
     pub reason: String,
 }
 
+impl fmt::Display for Missing {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "no {} network: {}", self.network, self.reason)
+    }
+}
+
 impl Simulator {
     /// Reads a simulator file.
     ///
     /// # Errors
     /// When the file is missing, is no simulator, is of another version, or holds a network that cannot be evaluated.
     pub fn read(path: &Path) -> Result<Self> {
+        if files::source::is_folder(path) {
+            return Err(Error::in_file(path, "is a folder, not a simulator file: are the arguments exchanged?"));
+        }
         let text = files::read_text(path)?;
         let version: SchemaOnly =
             serde_json::from_str(&text).map_err(|e| broken(path, &e, "is no simulator file of mindgap"))?;
@@ -229,6 +247,10 @@ impl Simulator {
         if self.ensemble.as_ref().is_some_and(|ensemble| !ensemble.is_sound()) {
             return Err(Error::in_file(path, "the distribution over robots holds numbers that cannot be"));
         }
+        let wheels = self.reference.as_ref().and_then(|reference| reference.wheels.as_ref());
+        if wheels.is_some_and(|law| !law.is_sound()) {
+            return Err(Error::in_file(path, "the law of the wheels holds numbers that cannot be"));
+        }
         let motion = [("turn", &self.turn), ("forward", &self.forward), ("lateral", &self.lateral)];
         let sonar = [("echo_probability", &self.echo_probability), ("echo_value", &self.echo_value)];
         let motion = motion.map(|(name, l)| (name, l.as_ref().is_none_or(Learned::is_sound)));
@@ -237,6 +259,7 @@ impl Simulator {
         if self.first_echo.iter().chain(judged).any(|law| !law.is_sound()) {
             return Err(Error::in_file(path, "the first-echo law holds numbers that cannot be"));
         }
+        self.check_further(path)?;
         match motion.iter().chain(&sonar).find(|(_, sound)| !sound) {
             Some((name, _)) => Err(Error::in_file(path, format!("the {name} network holds numbers that cannot be"))),
             None => Ok(()),

@@ -2,22 +2,30 @@
 
 mod causes;
 mod compared;
+pub mod comparison;
 mod places;
 mod runs;
+mod sessions;
+mod speeds;
 
 use maud::{Markup, html};
+use serde_json::Map;
 
+use self::comparison::Comparison;
 use super::document::{Document, Section, chart, table};
 use super::replay::Replay;
 use super::{glossary, words};
 use mindgap_diagnosis::Findings;
 use mindgap_diagnosis::budget::{Part, UNEXPLAINED};
 use mindgap_diagnosis::diagnosis::Diagnosis;
+use mindgap_diagnosis::ruler::by_ruler;
+use mindgap_diagnosis::scope::of_sensor;
 use mindgap_diagnosis::verdict::Verdict;
 use mindgap_figures::pictures;
 use mindgap_figures::report::room::Room;
 use mindgap_foundations::error::Result;
-use mindgap_logs::Logs;
+use mindgap_foundations::statistics::rounding::three_digits;
+use mindgap_logs::{Logs, Robot};
 use mindgap_models::effects::Effect;
 use mindgap_models::simulator::baseline::Baseline;
 use mindgap_models::simulator::rollout::REACHED_CM;
@@ -34,6 +42,8 @@ pub struct Subject<'a> {
     pub catalogue: &'a [&'static Effect],
     /// Where both come from.
     pub source: Source,
+    /// What was written into model files, and runs of both sides.
+    pub comparison: Comparison<'a>,
 }
 
 /// Where a simulator and logs come from.
@@ -60,11 +70,13 @@ pub fn page(subject: &Subject) -> Result<String> {
     let diagnosis = &findings.diagnosis;
     let poses = logs.runs.iter().flat_map(|run| run.rows.iter().filter_map(|row| row.pose));
     let room = Room::new(&logs.scene, REACHED_CM, poses.map(|pose| pose.position_cm));
-    let mut sections = Vec::new();
+    let mut sections = Vec::from_iter(speeds::section(subject));
     if !diagnosis.budget.is_empty() {
         sections.push(Section { id: "budget", title: "What the gap is made of", body: budget(diagnosis, catalogue) });
     }
     sections.extend(causes::section(subject));
+    sections.extend(comparison::sections(&subject.comparison));
+    sections.extend(sessions::section(diagnosis, catalogue));
     sections.extend(places::section(findings, &room));
     sections.extend(runs::ends(diagnosis));
     let replay = runs::replay(subject, room);
@@ -74,7 +86,7 @@ pub fn page(subject: &Subject) -> Result<String> {
     sections.push(glossary::section());
     Ok(Document {
         kind: "Diagnosis",
-        headline: &headline(diagnosis, catalogue),
+        headline: &headline(diagnosis, catalogue, &logs.robot),
         subject: &format!("{} against {}", source.logs, source.simulator),
         lead: lead(diagnosis, catalogue, logs),
         sections,
@@ -83,25 +95,19 @@ pub fn page(subject: &Subject) -> Result<String> {
     .html())
 }
 
-/// The verdict, and the names of the effects.
-fn headline(diagnosis: &Diagnosis, catalogue: &[&'static Effect]) -> String {
-    let verdict = words::verdict(diagnosis.verdict);
-    let names: Vec<&str> = diagnosis.effects.iter().map(|effect| words::name(effect.id, catalogue)).collect();
-    match names.as_slice() {
-        [] => verdict.into(),
-        [name] => format!("{verdict} The effect: {name}."),
-        names => format!("{verdict} The effects: {}.", words::list(names)),
+/// The verdict, and each effect with its side and size where a ruler would show them, and its probability.
+fn headline(diagnosis: &Diagnosis, catalogue: &[&'static Effect], robot: &Robot) -> String {
+    let named = diagnosis.effects.iter().map(|effect| {
+        let size = by_ruler(effect.id, &effect.parameters, &Map::new(), robot);
+        let what = size.as_deref().unwrap_or_else(|| words::name(effect.id, catalogue));
+        format!("{} ({} sure)", of_sensor(what, effect.sensor.as_deref()), words::percent(effect.probability))
+    });
+    let named: Vec<String> = named.collect();
+    let sentence = words::verdict(diagnosis.verdict);
+    match words::list(&named.iter().map(String::as_str).collect::<Vec<_>>()) {
+        list if list.is_empty() => sentence.into(),
+        list => format!("{}: {list}.", sentence.trim_end_matches('.')),
     }
-}
-
-/// How probable each named effect is, in words.
-fn sure(diagnosis: &Diagnosis, catalogue: &[&'static Effect]) -> String {
-    let named: Vec<String> = diagnosis
-        .effects
-        .iter()
-        .map(|effect| format!("{} {}", words::name(effect.id, catalogue), words::percent(effect.probability)))
-        .collect();
-    words::list(&named.iter().map(String::as_str).collect::<Vec<_>>())
 }
 
 fn lead(diagnosis: &Diagnosis, catalogue: &[&'static Effect], logs: &Logs) -> Markup {
@@ -109,13 +115,16 @@ fn lead(diagnosis: &Diagnosis, catalogue: &[&'static Effect], logs: &Logs) -> Ma
     let rows: usize = logs.runs.iter().map(|run| run.rows.len()).sum();
     html! {
         @if let Some(astray) = runs::astray(diagnosis) { p { (astray) } }
-        @if let (Some(reduction), false) = (diagnosis.reduction.as_ref(), diagnosis.effects.is_empty()) {
-            @let [low, high] = reduction.whole.ci95.map(words::percent);
+        @if let Some((closed, ci95)) = diagnosis.reduction.as_ref().and_then(|r| r.whole.reducible_closed.zip(r.whole.ci95)) {
+            @let [low, high] = ci95.map(words::percent);
             p {
                 "With " @if diagnosis.effects.len() == 1 { "it" } @else { "them" } " the simulator closes "
-                strong { (words::percent(reduction.whole.reducible_closed)) }
-                " of the gap, apart from chance (95 % interval: " (low) " to " (high) "). "
-                "Probabilities: " (sure(diagnosis, catalogue)) "."
+                strong { (words::percent(closed)) }
+                " of the gap, apart from chance (95 % interval: " (low) " to " (high) ")."
+                @if let Some(next) = diagnosis.reduction.as_ref().and_then(|reduction| reduction.runner_up.as_ref()) {
+                    @let names: Vec<&str> = next.id.split('+').map(|id| words::name(id, catalogue)).collect();
+                    " The next best explanation, " (words::list(&names)) ", closes " (words::percent(next.reducible_closed)) "."
+                }
             }
         }
         @if diagnosis.verdict != Verdict::NoGap { p { "See " a href="#next" { "what to do next" } "." } }
@@ -124,23 +133,22 @@ fn lead(diagnosis: &Diagnosis, catalogue: &[&'static Effect], logs: &Logs) -> Ma
             @if logs.runs.len() == 1 { " run." } @else { " runs." }
         }
         @for missing in diagnosis.scope.not_compared.chunk_by(|a, b| a.reason == b.reason) {
-            @let channels: Vec<&str> = missing.iter().map(|one| words::channel(one.channel)).collect();
-            p.bad { "Not compared: " (words::list(&channels)) ". " (missing[0].reason) }
+            @let channels = missing.iter().map(|one| of_sensor(words::channel(one.channel), one.sensor.as_deref()));
+            @let channels: Vec<String> = channels.collect();
+            p.bad { "Not compared: " (words::list(&channels.iter().map(String::as_str).collect::<Vec<_>>())) ". " (missing[0].reason) }
         }
+        @for unconfirmed in &diagnosis.unconfirmed { p.bad { (unconfirmed.sentence()) } }
+        @for outliers in &diagnosis.outliers { p.bad { (outliers.sentence()) } }
     }
 }
 
 fn budget(diagnosis: &Diagnosis, catalogue: &[&'static Effect]) -> Markup {
     let parts = &diagnosis.budget;
-    let said: Vec<String> = parts
-        .iter()
-        .map(|part| format!("{} {}", words::name(&part.id, catalogue), words::percent(part.share)))
-        .collect();
-    let rows: Vec<[String; 2]> = parts
-        .iter()
-        .map(|part| [words::name(&part.id, catalogue).into(), words::percent_within(part.share, part.ci95)])
-        .collect();
-    let drawn = pictures::budget(diagnosis, |id| words::name(id, catalogue)).draw();
+    let name = |part: &Part| of_sensor(words::name(&part.id, catalogue), part.sensor.as_deref());
+    let said: Vec<String> = parts.iter().map(|part| format!("{} {}", name(part), words::percent(part.share))).collect();
+    let rows: Vec<[String; 2]> =
+        parts.iter().map(|part| [name(part), words::percent_within(part.share, part.ci95)]).collect();
+    let drawn = pictures::budget(diagnosis, name).draw();
     html! {
         (chart("budget", &drawn, &format!("Shares of the gap: {}", said.join(", ")), html! {
             "The share of the gap that each cause explains: repair the longest bar first. The thin lines are 95 % intervals. "
@@ -161,7 +169,7 @@ fn next(diagnosis: &Diagnosis, catalogue: &[&'static Effect]) -> Section {
         ol {
             @for part in parts {
                 @if let Some(cause) = words::cause(&part.id, catalogue) {
-                    li { "Check " strong { (cause.name) } ", " (words::percent(part.share))
+                    li { "Check " strong { (of_sensor(cause.name, part.sensor.as_deref())) } ", " (words::percent(part.share))
                         " of the gap: " (cause.check) }
                 }
             }
@@ -190,6 +198,9 @@ fn next(diagnosis: &Diagnosis, catalogue: &[&'static Effect]) -> Section {
                 li { "By these logs, nothing needs repair. If a controller fails all the same, it drives under other conditions: log "
                     "those runs and diagnose them." }
             }
+            @if diagnosis.verdict == Verdict::NoGap {
+                li { "Departures from neutral as large as these would have shown:" (would_show(diagnosis, catalogue)) }
+            }
             @if !diagnosis.untestable.is_empty() {
                 li {
                     "These effects cannot be ruled out, because the logs do not excite them: "
@@ -200,6 +211,15 @@ fn next(diagnosis: &Diagnosis, catalogue: &[&'static Effect]) -> Section {
         }
     };
     Section { id: "next", title: "What to do next", body }
+}
+
+/// The smallest strengths that the logs would have shown.
+fn would_show(diagnosis: &Diagnosis, catalogue: &[&'static Effect]) -> Markup {
+    let shown = diagnosis.detectable.iter().filter_map(|of| {
+        let strength = format!("{} {}", of.parameter, three_digits(of.smallest?));
+        Some([of_sensor(words::name(of.id, catalogue), of.sensor.as_deref()), strength])
+    });
+    table("What these logs would have shown", ["effect", "smallest departure"], &shown.collect::<Vec<_>>())
 }
 
 #[cfg(test)]

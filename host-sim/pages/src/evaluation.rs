@@ -1,5 +1,7 @@
 //! The page of an evaluation: how well each network predicts logs that it was not trained on.
 
+use std::borrow::Cow;
+
 use maud::{Markup, html};
 
 use super::document::{Document, Section, chart, open_table, table};
@@ -28,7 +30,7 @@ const GOOD: f64 = 0.9;
 const USABLE: f64 = 0.5;
 
 /// A network's name and unit with its figures.
-type Judged<'a> = (&'static str, &'static str, &'a Value);
+type Judged<'a> = (Cow<'a, str>, &'static str, &'a Value);
 
 /// Returns the page, whole in one file.
 pub fn page(subject: &Subject) -> String {
@@ -67,23 +69,31 @@ pub fn page(subject: &Subject) -> String {
 }
 
 fn values(networks: &Networks) -> Vec<Judged<'_>> {
-    let Networks { turn, forward, lateral, echo_value, .. } = networks;
-    [
+    let Networks { turn, forward, lateral, .. } = networks;
+    let [forward, lateral, turn] = [forward, lateral, turn].map(Option::as_ref);
+    let values = [
         ("forward motion", "cm", forward),
         ("sideways motion", "cm", lateral),
         ("turn", "degrees", turn),
-        ("sonar reading", "cm", echo_value),
-    ]
-    .into_iter()
-    .filter_map(|(name, unit, value)| Some((name, unit, value.as_ref()?)))
-    .collect()
+        ("sonar reading", "cm", networks.unnamed_value()),
+    ];
+    let values = values.into_iter().filter_map(|(name, unit, value)| Some((Cow::Borrowed(name), unit, value?)));
+    let named =
+        networks.named_values().map(|(name, value)| (format!("sonar reading of {}", sensor(name)).into(), "cm", value));
+    values.chain(named).collect()
+}
+
+/// Returns the sensor of a network `echo_value_NAME`.
+fn sensor(network: &str) -> &str {
+    network.strip_prefix("echo_value_").unwrap_or(network)
 }
 
 /// Which networks are good, usable and poor, in one sentence.
 fn headline(values: &[Judged]) -> String {
     let among = |low: f64, high: f64| {
         let r2 = |v: &Value| v.r2.unwrap_or(0.0);
-        let names: Vec<&str> = values.iter().filter(|(.., v)| (low..high).contains(&r2(v))).map(|v| v.0).collect();
+        let names: Vec<&str> =
+            values.iter().filter(|(.., v)| (low..high).contains(&r2(v))).map(|v| v.0.as_ref()).collect();
         words::list(&names)
     };
     let parts = [

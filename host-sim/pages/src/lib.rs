@@ -1,4 +1,5 @@
-//! Pages for a browser: the results of a command in one file that opens from disk, on a phone, in the dark and in print.
+//! Pages for a browser: the results of a command in one file that opens from disk, on a phone, in the dark and in print. Module
+//! [`text`] has results for one screen of a terminal.
 //!
 //! There is one module per page. Words, tables and charts are made here, and all words are escaped; scripts only move what
 //! moves, the replay and sorted tables.
@@ -8,6 +9,7 @@ pub mod diagnosis;
 pub mod evaluation;
 pub mod fleet;
 pub mod simulation;
+pub mod text;
 pub mod trials;
 pub mod words;
 

@@ -1,10 +1,12 @@
 //! The page of a loop: the predicted and driven paths of each controller, and what each run taught the simulator.
 
+mod reasons;
+
 use maud::{Markup, html};
 
 use super::document::{Document, Section, chart, open_table};
 use super::words::{self, number, percent, percent_within};
-use mindgap_applications::adapt::Gap;
+use mindgap_applications::adapt::{Cause, Gap};
 use mindgap_applications::closed_loop::drawing;
 use mindgap_applications::closed_loop::state::{State, Trial, Verdict};
 use mindgap_figures::report::curves::{Curve, CurveChart, Point};
@@ -139,6 +141,12 @@ fn turns(state: &State) -> Markup {
                 "range means that the robot is not known well enough."
             }))
             (open_table(TURNS_HEADER, &rows))
+            @let reasons: Vec<(usize, String)> =
+                state.trials.iter().filter_map(|trial| Some((trial.number, reasons::reason(trial)?))).collect();
+            @if !reasons.is_empty() {
+                h3 #why { "Why the chances changed" }
+                ul { @for (trial, reason) in &reasons { li { "Trial " (trial) ": " (reason) } } }
+            }
         }
         @if !state.failures.is_empty() {
             h3 { "Drives without a usable log" }
@@ -156,14 +164,25 @@ fn row(trial: &Trial) -> [String; 5] {
             format!("{how}: {} after {} steps, {} cm off", real.ending, real.steps, number(real.distance_cm, 0))
         },
     );
-    let names: Vec<&str> = trial.effects.iter().map(|effect| words::name(&effect.effect, CATALOGUE)).collect();
+    let names: Vec<String> = trial.effects.iter().map(|effect| found(effect, &trial.causes)).collect();
     [
         trial.number.to_string(),
         chance(&trial.predicted),
         real,
         trial.chance_after.as_ref().map_or_else(|| "–".into(), chance),
-        if names.is_empty() { "–".into() } else { words::list(&names) },
+        if names.is_empty() {
+            "–".into()
+        } else {
+            words::list(&names.iter().map(String::as_str).collect::<Vec<_>>())
+        },
     ]
+}
+
+/// The name of an effect that was added, with its probability.
+fn found(effect: &AppliedEffect, causes: &[Cause]) -> String {
+    let name = words::name(&effect.effect, CATALOGUE);
+    let cause = causes.iter().find(|cause| cause.id == effect.effect);
+    cause.map_or_else(|| name.into(), |cause| format!("{name} ({})", percent(cause.probability)))
 }
 
 fn success_probabilities(trials: &[Trial]) -> Figure {
@@ -259,7 +278,13 @@ fn effects(trials: &[Trial]) -> Markup {
                 "No named effect is in the runs. Where the robot differs from the simulator, command by command, the difference is "
                 "learned as a bias with its own uncertainty."
             },
-            Some(found) => @for effect in found { (cause(effect)) },
+            Some(found) => @for effect in found { (card(effect, last.map_or(&[], |trial| &trial.causes))) },
+        }
+        @for unused in last.iter().flat_map(|trial| &trial.causes).filter(|cause| !cause.used) {
+            p.quiet {
+                "The diagnosis also named " (words::name(&unused.id, CATALOGUE)) " (" (percent(unused.probability)) "). It is not "
+                "used: biases of single commands predict the runs better."
+            }
         }
     }
 }
@@ -271,7 +296,8 @@ fn rounded(setting: Setting) -> String {
     }
 }
 
-fn cause(applied: &AppliedEffect) -> Markup {
+fn card(applied: &AppliedEffect, causes: &[Cause]) -> Markup {
+    let cause = causes.iter().find(|cause| cause.id == applied.effect);
     let known = words::cause(&applied.effect, CATALOGUE);
     let values: Vec<String> =
         applied.parameters.iter().map(|(name, setting)| format!("{name} {}", rounded(*setting))).collect();
@@ -282,10 +308,19 @@ fn cause(applied: &AppliedEffect) -> Markup {
             }
             dl {
                 @if let Some(cause) = known { dt { "What it is" } dd { (cause.what) } }
+                @if let Some(cause) = cause { dt { "How probable" } dd { (percent(cause.probability)) ". " (rivals(cause)) } }
                 dt { "How strong" } dd { (words::list(&values.iter().map(String::as_str).collect::<Vec<_>>())) }
                 @if let Some(cause) = known { dt { "How to check" } dd { (cause.check) } }
             }
         }
+    }
+}
+
+fn rivals(cause: &Cause) -> String {
+    let names: Vec<&str> = cause.ambiguous_with.iter().map(|id| words::name(id, CATALOGUE)).collect();
+    match names.is_empty() {
+        true => "No other effect explains these runs as well.".into(),
+        false => format!("These runs cannot distinguish it from {}.", words::list(&names)),
     }
 }
 

@@ -20,7 +20,7 @@ pub struct Cause {
 
 const WIDER_SCATTER: Cause = Cause {
     name: "wider scatter",
-    what: "The robot repeats itself less exactly than the simulator assumes, whatever the circumstances.",
+    what: "The same commands give more varied results than the simulator assumes, under all conditions.",
     check: "Send the same short sequence of commands ten times from one mark on the floor and measure with a ruler how far \
             apart the ends are; look for a loose wheel, a worn castor or a tracker that jitters while the robot stands \
             still.",
@@ -28,8 +28,8 @@ const WIDER_SCATTER: Cause = Cause {
 
 const NOT_EXPLAINED: Cause = Cause {
     name: "unexplained",
-    what: "The logs depend on circumstances in a way that no named effect describes.",
-    check: "Watch the robot in the circumstances on which it depends.",
+    what: "The residuals depend on the conditions in a way that no named effect describes.",
+    check: "Watch the robot under the conditions on which the residuals depend.",
 };
 
 /// Returns what an id of a budget means; `None` if the effect is not in the catalogue.
@@ -54,7 +54,7 @@ pub fn verdict(verdict: Verdict) -> &'static str {
     match verdict {
         Verdict::NoGap => "No gap: the logs agree with the simulator within its own error.",
         Verdict::Known => "There is a gap, and known effects explain it.",
-        Verdict::PartlyKnown => "There is a gap. Known effects explain a part of it, and something is left.",
+        Verdict::PartlyKnown => "There is a gap, and known effects explain a part of it.",
         Verdict::Unknown => "There is a gap, and no known effect explains it.",
     }
 }
@@ -67,6 +67,11 @@ pub fn with(diagnosis: &Diagnosis) -> &'static str {
     }
 }
 
+/// Returns a number with its noun: "1 run", "2 runs".
+pub fn count(of: usize, what: &str) -> String {
+    format!("{of} {what}{}", if of == 1 { "" } else { "s" })
+}
+
 /// What a channel is.
 pub fn channel(channel: Channel) -> &'static str {
     match channel {
@@ -75,6 +80,9 @@ pub fn channel(channel: Channel) -> &'static str {
         Channel::Turn => "turn",
         Channel::EchoRate => "echo rate",
         Channel::EchoValue => "sonar reading",
+        Channel::RotLeft => "turn of the left wheel",
+        Channel::RotRight => "turn of the right wheel",
+        Channel::Gyro => "yaw rate",
     }
 }
 

@@ -1,4 +1,5 @@
-//! Workers of a command: the threads of this process, and with the feature `mpi` the ranks of a cluster.
+//! Workers of a command: the threads of this process, with the feature `mpi` the ranks of a cluster, and [programs](program)
+//! that the user names.
 //!
 //! [`Workers`] is the [`Executor`] of the command. It takes results in the order of their indices, so they do not depend on who did
 //! the work, and can keep them in a [`checkpoint`], from which an interrupted run resumes.
@@ -7,6 +8,7 @@ pub mod checkpoint;
 mod distribute;
 #[cfg(not(feature = "mpi"))]
 mod no_ranks;
+pub mod program;
 #[cfg(feature = "mpi")]
 mod ranks;
 pub mod task;

@@ -6,9 +6,11 @@ use mindgap_core::controller::{Machine, Motors, Status};
 use mindgap_core::fixed::types::I16F16;
 use mindgap_core::fixed_network::Output;
 use mindgap_core::fixed_point::cos_pi;
+use mindgap_core::monitor::Alternative;
 use mindgap_core::rand_core::{Rng, SeedableRng};
 
 use crate::controller::CONTROLLER;
+use crate::monitored;
 use crate::networks::{ECHO_PROBABILITY, ECHO_VALUE, FORWARD, LATERAL, TURN};
 use crate::report;
 
@@ -74,6 +76,7 @@ pub fn run() {
     let mut checksum = CRC.digest();
     inferences(&mut checksum);
     controller_runs(&mut checksum);
+    monitored_life(&mut checksum);
     report!("checksum {}", checksum.finalize());
 }
 
@@ -92,6 +95,20 @@ fn inferences(checksum: &mut Digest<u32>) {
             report!("sample {}: {} {} {} {} {}", i, turn, forward, lateral, probability, value);
         }
     }
+}
+
+/// Watches a robot for its life.
+fn monitored_life(checksum: &mut Digest<u32>) {
+    monitored::live(|i, outcome, monitor| {
+        for direction in 0..10 {
+            for size in 0..3 {
+                checksum.update(&monitor.evidence(Alternative::Direction(direction, size)).to_le_bytes());
+            }
+        }
+        if i % 9_999 == 0 {
+            report!("watched {}: {:?}", i, outcome);
+        }
+    });
 }
 
 /// Runs the controller in front of a wall, with the networks as the robot.

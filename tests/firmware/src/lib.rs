@@ -3,6 +3,11 @@
 
 pub mod controller;
 pub mod job;
+#[cfg(target_os = "none")]
+pub mod marks;
+#[rustfmt::skip]
+pub mod monitor;
+pub mod monitored;
 #[rustfmt::skip]
 pub mod networks;
 #[cfg(target_os = "none")]

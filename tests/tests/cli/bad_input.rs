@@ -82,7 +82,10 @@ fn numbers_out_of_range_are_refused() {
     let problem = refused_after("run-001.csv", |text| with_row(&text, 4, |cells| cells[2] = "101".into()));
     assert_eq!(problem, "logs/run-001.csv:4: right = 101 lies outside -100..100");
     let problem = refused_after("run-001.csv", |text| with_row(&text, 4, |cells| cells[6] = "-1".into()));
-    assert_eq!(problem, "logs/run-001.csv:4: echo_cm = -1 is negative; leave the cell empty if there was no echo");
+    assert_eq!(
+        problem,
+        "logs/run-001.csv:4: echo_cm = -1 is negative; leave the cell empty if there was no echo, and add 256 if a byte was read as signed"
+    );
     let problem = refused_after("run-001.csv", |text| with_row(&text, 4, |cells| cells[0] = "0".into()));
     begins(&problem, "logs/run-001.csv:4: t_ms = 0 is not later than the row before");
     let problem = refused_after("run-001.csv", |text| with_row(&text, 4, |cells| cells[3].clear()));

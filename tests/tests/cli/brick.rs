@@ -146,6 +146,28 @@ fn buttons_and_sensors_follow_a_script() {
 }
 
 #[test]
+fn a_port_that_no_option_configures_is_reported() {
+    let sandbox = with_program();
+    let source =
+        "task main() { SetSensorTouch(IN_2); NumOut(0, 0, Sensor(IN_2)); SetSensorLowspeed(IN_4); SensorUS(IN_4); }";
+    sandbox.write("touch.rxe", compile(source));
+    sandbox.write("world.csv", "t_ms,port_2\n0,0\n");
+    sandbox.write("scene.toml", mindgap_tests::rooms::SCENE);
+    for (options, unconfigured) in [
+        ("--readings none", vec![2]),
+        ("--readings none --sonar 1", vec![2, 4]),
+        ("--readings none --world world.csv", vec![]),
+        ("--scene scene.toml", vec![2]),
+    ] {
+        let called = sandbox.call(&format!("brick touch.rxe {options} --json facts.json --force"));
+        assert_eq!(called.code, 0, "{}", called.err);
+        let warned = |port: usize| called.err.contains(&format!("the program reads port {port}, which no option"));
+        assert!((1..=4).all(|port| warned(port) == unconfigured.contains(&port)), "{options}: {}", called.err);
+        assert_eq!(sandbox.json("facts.json")["unconfigured_ports"], serde_json::json!(unconfigured), "{options}");
+    }
+}
+
+#[test]
 fn a_program_drives_a_robot_in_a_scene() {
     let sandbox = with_program();
     sandbox.write("scene.toml", mindgap_tests::rooms::SCENE);

@@ -34,7 +34,8 @@ fn a_challenge_is_made_answered_and_scored() {
     for case in sealed {
         let answer = format!("blind/answers/{}", case["case"].as_str().expect("a name"));
         let mut silent = sandbox.json(&format!("{answer}.json"));
-        (silent["verdict"], silent["effects"], silent["shrink"]) = (json!("no_gap"), json!([]), Value::Null);
+        (silent["verdict"], silent["effects"]) = (json!("no_gap"), json!([]));
+        silent["shrink"]["reducible_closed"] = Value::Null;
         sandbox.write(&format!("{answer}.json"), silent.to_string());
         sandbox.write(&format!("{answer}-added.json"), "[]");
     }

@@ -169,6 +169,6 @@ fn networks_are_exported_as_source_code() {
         sandbox.run(&format!("export sim.json --format {format} --out {file}"));
         assert!(sandbox.text(file).contains(definition), "{}", sandbox.text(file));
     }
-    let problem = "sim.json: contains networks, which the formats rxe and nxc-collect do not support";
+    let problem = "sim.json: contains networks, which the formats rxe, nxc-collect and pybricks-collect do not support";
     assert_eq!(sandbox.refused("export sim.json --format rxe --out networks.rxe"), problem);
 }

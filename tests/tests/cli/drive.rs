@@ -76,3 +76,22 @@ fn a_run_that_cannot_start_is_refused() {
     let problem = sandbox.refused("drive none.toml --scene scene.toml --out run.csv");
     assert!(problem.starts_with("none.toml: cannot be read: "), "{problem}");
 }
+
+#[test]
+fn a_script_is_driven_where_there_is_room_for_it() {
+    let sandbox = sandbox();
+    sandbox.write("script.csv", "t_ms,left,right\n0,40,40\n800,30,-30\n2000,0,0\n");
+    let said = sandbox.run("drive script.csv --scene scene.toml --seed 3 --out run.csv");
+    assert!(said.starts_with("run.csv: finished after 5 steps"), "{said}");
+    let log = sandbox.text("run.csv");
+    let commands: Vec<Vec<&str>> = log.lines().skip(1).map(|row| row.split(',').skip(1).take(2).collect()).collect();
+    let spins = [["30", "-30"]; 3];
+    assert_eq!(commands, [&[["40", "40"]; 2][..], &spins, &[["0", "0"]]].concat());
+    let at_start = sandbox.run("drive script.csv --scene scene.toml --start 2 --out run.csv --force");
+    assert!(at_start.contains("finished") && sandbox.text("run.csv") != log, "{at_start}");
+    let refused = sandbox.refused("drive script.csv --scene scene.toml --start 9 --out other.csv");
+    assert!(refused.contains("scene.toml"), "{refused}");
+    sandbox.write("script.csv", "t_ms,left\n0,40\n800,30\n");
+    let refused = sandbox.refused("drive script.csv --scene scene.toml --out other.csv");
+    assert!(refused.contains("script.csv") && refused.contains("right is missing"), "{refused}");
+}

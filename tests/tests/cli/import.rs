@@ -145,6 +145,42 @@ fn several_runs_are_matched_to_their_tracks() {
 }
 
 #[test]
+fn the_robot_is_found_among_the_bodies_of_a_take() {
+    let sandbox = with_a_drive();
+    let mut take = "Format Version,1.23,Rotation Type,Quaternion,Length Units,Meters\n\n".to_owned();
+    let repeat = |cell: &str, count: usize| vec![cell; count].join(",");
+    let kinds = format!("{},{}", repeat("Rotation", 4), repeat("Position", 3));
+    take += &format!(",Type,{}\n,Name,{},{}\n", repeat("Rigid Body", 14), repeat("corner", 7), repeat("rover", 7));
+    take += &format!(",,{kinds},{kinds}\nFrame,Time (Seconds),X,Y,Z,W,X,Y,Z,X,Y,Z,W,X,Y,Z\n");
+    for (i, line) in sandbox.text("track.csv").lines().skip(1).enumerate() {
+        let cells: Vec<Option<f64>> = line.split(',').map(|cell| cell.parse().ok()).collect();
+        let rover = cells[1].zip(cells[2]).zip(cells[3]).map_or(",,,,,,".into(), |((x, y), rad)| {
+            let (sin, cos) = libm::sincos(rad / 2.0);
+            format!("0,{sin},0,{cos},{x},0.1,{}", -y)
+        });
+        take += &format!("{i},{},0,0,0,1,2,0.1,2,{rover}\n", cells[0].expect("a time"));
+    }
+    sandbox.write("take.csv", take);
+    sandbox.run(CALL);
+    let expected = sandbox.text("logs/run-000.csv");
+    let said = sandbox.run(&format!("{} --force", CALL.replace("track.csv", "take.csv")));
+    assert!(said.contains("run-000 (rover)") && said.contains("excluded: body corner: it does not move"), "{said}");
+    assert_eq!(sandbox.json("report.json")["left_out"][0]["name"], "corner");
+    let cells = |text: &str| {
+        text.lines().skip(1).flat_map(|line| line.split(',').map(str::to_owned).collect::<Vec<_>>()).collect::<Vec<_>>()
+    };
+    for (a, b) in cells(&expected).iter().zip(cells(&sandbox.text("logs/run-000.csv"))) {
+        let off = a.parse::<f64>().unwrap_or(0.0) - b.parse::<f64>().unwrap_or(0.0);
+        assert!(off.abs() < 0.1 || off.abs() > 359.9, "{a} and {b}");
+    }
+    let refusal = sandbox.refused(&format!("{} --force --body cat", CALL.replace("track.csv", "take.csv")));
+    assert!(refusal.starts_with("take.csv: has no body of the name that --body states"), "{refusal}");
+    let info = sandbox.run("info take.csv --json info.json");
+    assert!(info.contains("motion capture by Motive") && info.contains("bodies: corner, rover"), "{info}");
+    assert_eq!(sandbox.json("info.json")["files"][0]["bodies"][1], "rover");
+}
+
+#[test]
 fn logs_and_tracks_of_different_drives_are_refused() {
     let camera = Camera { offset_ms: 5e3, drift: 0.0 };
     let drive_of = |seed| drive(seed, camera);
@@ -165,5 +201,5 @@ fn logs_and_tracks_of_different_drives_are_refused() {
     assert!(refusal.contains("none of the files is a log of a brick"), "{refusal}");
     sandbox.write("track.csv", "t,x,y,theta\n0,1,1,0\n33,1,1,0\n");
     let refusal = sandbox.refused(CALL);
-    assert!(refusal.starts_with("track.csv:1: column t has no unit: give --time-unit"), "{refusal}");
+    assert!(refusal.starts_with("track.csv:1: column x has no unit: name it x_m"), "{refusal}");
 }

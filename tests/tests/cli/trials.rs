@@ -90,7 +90,7 @@ fn a_failed_run_teaches_nothing() {
     let lost = each_row("NR > 5 { $4 = \"\"; $5 = \"\"; $6 = \"\" }");
     let moved = each_row("NR > 4 { $4 += 60; $5 += 30 }");
     let cases = [
-        ("exec sleep 60", "", "took longer than 1 s and was killed"),
+        ("exec sleep 60", "", "took longer than 1 s and was ended"),
         ("", "rm \"$4\"", "was not written by the robot"),
         ("", "head -c 300 \"$4\" > cut; mv cut \"$4\"", "incomplete or malformed line"),
         ("", "sed -i '6,$d' \"$4\"", "incomplete log"),

@@ -24,7 +24,7 @@ use toml::Table;
 struct Diagnosis {
     verdict: Verdict,
     effects: Vec<NamedEffect>,
-    shrink: Option<Reduction>,
+    shrink: Reduction,
 }
 
 #[derive(Debug, Deserialize)]
@@ -36,7 +36,7 @@ struct NamedEffect {
 
 #[derive(Deserialize)]
 struct Reduction {
-    reducible_closed: f64,
+    reducible_closed: Option<f64>,
 }
 
 /// A rival counts as named if its effect has at most this many.
@@ -76,12 +76,15 @@ pub fn effects_of_another_robot_are_named(data: &Path) {
         let effects: Vec<&str> = labels[case].as_array().expect("a list").iter().filter_map(|e| e.as_str()).collect();
         let is_named = |effect: &&str| diagnosis.effects.iter().any(|found| stands_for(found, effect));
         match effects.as_slice() {
-            [] => assert!(diagnosis.effects.is_empty() && diagnosis.shrink.is_none(), "{case}: false alarm"),
+            [] => assert!(
+                diagnosis.effects.is_empty() && diagnosis.shrink.reducible_closed.is_none(),
+                "{case}: false alarm"
+            ),
             [effect] => {
                 singles += 1;
                 if diagnosis.effects.first().is_some_and(|first| stands_for(first, effect)) {
                     named += 1;
-                    let share = diagnosis.shrink.as_ref().map_or(0.0, |s| s.reducible_closed);
+                    let share = diagnosis.shrink.reducible_closed.unwrap_or(0.0);
                     closed += usize::from(share >= 0.8);
                 } else {
                     wrong.push(format!("{case} {effect}"));

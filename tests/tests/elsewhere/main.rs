@@ -3,6 +3,7 @@
 
 mod gap_cases;
 mod gap_real;
+mod given_cases;
 mod injections;
 mod inspection;
 mod own_robot;
@@ -24,7 +25,7 @@ macro_rules! trial {
 }
 
 fn main() -> ExitCode {
-    let trials = vec![
+    let mut trials = vec![
         trial!(gap_cases::effects_of_another_robot_are_named, "data"),
         trial!(gap_cases::minimal_method_agrees_with_the_full_one, "data"),
         trial!(gap_cases::a_lagging_robot_with_a_weak_motor_carries_no_load, "cases/lag-and-weak-motor/logs"),
@@ -44,6 +45,7 @@ fn main() -> ExitCode {
         trial!(sonar_law::the_first_echo_law_predicts_scans_at_another_place, "real/nxt-sonar/chunnx"),
         trial!(reading::the_scene_with_four_obstacles_is_read, "data/scenes/four-obstacles.toml"),
     ];
+    trials.extend(given_cases::trials(&folder().join("cases")));
     libtest_mimic::run(&Arguments::from_args(), trials).exit_code()
 }
 

@@ -263,6 +263,16 @@ fn sketch_on_a_board_reads_its_sensor_and_sets_its_pins() {
     assert_eq!(first_move.1, "left-brake 1", "{events:?}");
     let (_, ending) = run(&["5800", "0"]);
     assert_eq!(ending, Ending::SonarDead.text());
+
+    // Open space between the readings, with sensors that end their pulse early, after some steps, or never. All drive on.
+    for (open, most_us) in [("25000", 35_000), ("38000", 45_000), ("200000", 260_000), ("-1", 70_000)] {
+        let (events, ending) = run(&["5800", open, open, "2900", "8700", open, "2900", "8700", "2900", "8700"]);
+        assert_eq!(ending, Ending::Finished.text(), "{open}: {events:?}");
+        let (rises, falls): (Vec<_>, Vec<_>) =
+            events.iter().filter(|(_, event)| event.starts_with("echo")).partition(|(_, event)| event == "echo 1");
+        let longest_us = rises.iter().zip(&falls).map(|(up, down)| down.0 - up.0).max().unwrap();
+        assert!((20_000..most_us).contains(&longest_us), "{open}: {longest_us}");
+    }
 }
 
 #[test]
@@ -313,7 +323,7 @@ fn networks_in_c_equal_the_core_to_the_bit() {
     }
     input.push(0);
     let folder = tempfile::tempdir().unwrap();
-    let header = c_networks(&networks);
+    let header = c_networks(&networks, "");
     let path = folder.path().join("networks.h");
     fs::write(&path, &header).unwrap();
     let strict = ["-std=c99", "-pedantic", "-Wall", "-Wextra", "-Wconversion", "-Werror", "-fsyntax-only", "-x", "c"];

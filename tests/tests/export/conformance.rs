@@ -11,7 +11,7 @@ use mindgap_tests::command::workspace;
 use mindgap_tests::nbc::compile;
 
 /// Smallest number of programs in the folder.
-const MIN_PROGRAMS: usize = 14;
+const MIN_PROGRAMS: usize = 19;
 
 #[test]
 fn programs_behave_as_in_the_firmware() {

@@ -41,10 +41,12 @@ fn it_is_sound_on_phones_and_laptops_by_day_and_by_night_and_answers_what_one_as
         look(DARK_LAPTOP, "diagnosis-laptop-dark"),
     ];
     for seen in visit(&page(), &visits) {
-        assert!(seen.word(1).contains("There is a gap, and known effects explain it."), "{}", seen.word(1));
+        let headline = seen.word(1);
+        assert!(headline.starts_with("There is a gap, and known effects explain it: "), "{headline}");
+        assert!(headline.contains("wheels like those of") && headline.ends_with("% sure)."), "{headline}");
         assert!(seen.word(2).contains("How to check"), "{}", seen.word(2));
         assert!(seen.word(3).contains("seed 1") && seen.word(3).contains("sim.json"), "{}", seen.word(3));
-        assert_eq!(seen.word(4), "budget causes where ends replay next compared words");
+        assert_eq!(seen.word(4), "speeds budget causes where ends replay next compared words");
         assert!(seen.answer(5).as_u64() >= Some(3), "a bar for an effect, for scatter and for what is unexplained");
         assert!(seen.answer(6).as_u64() > Some(0), "readings are drawn over time");
         assert!(seen.answer(7).as_u64() >= Some(2), "distances of simulated robots are drawn over time");

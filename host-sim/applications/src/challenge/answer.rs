@@ -4,7 +4,6 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use super::Folder;
-use super::seal::Published;
 use mindgap_diagnosis::{Method, findings};
 use mindgap_files as files;
 use mindgap_foundations::error::Result;
@@ -24,7 +23,7 @@ const SEED: u64 = 1;
 /// If the folder is not a challenge, or a diagnosis cannot be written.
 pub fn answer(executor: &dyn Executor, folder: &Path, mut watch: impl FnMut(usize, usize)) -> Result<usize> {
     let folder = Folder(folder);
-    let cases: Vec<Published> = files::read_csv(&folder.cases())?;
+    let cases = folder.published()?;
     let robots: BTreeSet<&str> = cases.iter().map(|case| case.robot.as_str()).collect();
     let robots = Vec::from_iter(robots);
     let learned = executor::map(executor, robots.len(), |robot| {

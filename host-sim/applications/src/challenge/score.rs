@@ -6,23 +6,31 @@ use std::path::Path;
 use rayon::prelude::*;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
 
 use super::Folder;
+use super::coverage::{Coverage, Measured};
 use super::seal::{Published, Sealed};
+use super::share::Share;
+use super::truth::{Truth, truth};
 use mindgap_built_in_robot::{ActiveEffect, Driving, Effect, record_driving};
 use mindgap_diagnosis::diagnose::closed;
 use mindgap_diagnosis::verdict::Verdict;
 use mindgap_files as files;
 use mindgap_foundations::counter::Counter;
 use mindgap_foundations::error::{Error, Result};
-use mindgap_logs::Logs;
+use mindgap_foundations::schema_number::SchemaNumber;
+use mindgap_logs::{Logs, Robot};
 use mindgap_models::effects::applied::AppliedEffect;
+use mindgap_models::effects::{CATALOGUE, Parameter};
 use mindgap_models::simulator::Simulator;
 
 /// Largest number of rivals of the first effect at which a set still counts as an answer.
 const MOST_RIVALS: usize = 3;
 /// Probability above which a wrong answer counts as confidently wrong.
 const SURE: f64 = 0.9;
+/// Probability above which a further effect counts as named.
+const LIKELY: f64 = 0.5;
 /// Number of new runs of a case, and of steps per run.
 const FRESH: [usize; 2] = [48, 60];
 /// Bin edges of the reliability table.
@@ -49,18 +57,11 @@ pub struct Scored {
     pub right: bool,
 }
 
-/// A share as a fraction.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
-pub struct Share {
-    /// Numerator.
-    pub count: usize,
-    /// Denominator.
-    pub of: usize,
-}
-
 /// The score of a challenge.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Score {
+    /// Version of the JSON.
+    pub schema: SchemaNumber<1>,
     /// Cases without effects in which a gap was detected.
     pub false_alarms: Share,
     /// Cases with effects in which a gap was detected.
@@ -79,10 +80,14 @@ pub struct Score {
     pub unknowns: Share,
     /// Known effects that were called unknown.
     pub false_unknowns: Share,
-    /// Median absolute difference between the claimed gap reduction and that on new runs; null without any claim.
+    /// Median absolute difference between the claimed gap reduction and that on new runs; null if none is claimed.
     pub closed_error: Option<f64>,
     /// Answers with a probability above 0.9 for a false effect.
     pub confidently_wrong: Share,
+    /// Cases in which a false effect that is not the first has a probability above one half.
+    pub false_seconds: Share,
+    /// Coverage of the 95 % intervals of effects that are present.
+    pub intervals: Coverage,
     /// Reliability: share of true first effects per bin of probability.
     pub calibration: Vec<(String, Share)>,
     /// Confusions: truth, answer, number of cases.
@@ -90,10 +95,14 @@ pub struct Score {
     /// All cases.
     #[serde(skip)]
     pub cases: Vec<Scored>,
+    /// The reported parameters of effects that are present.
+    #[serde(skip)]
+    pub measured: Vec<Measured>,
 }
 
 /// A case with its answer.
 struct Opened {
+    robot: Robot,
     sealed: Sealed,
     answer: Answered,
     closed_on_fresh_runs: Option<f64>,
@@ -104,7 +113,7 @@ struct Opened {
 struct Answered {
     verdict: Verdict,
     effects: Vec<AnsweredEffect>,
-    shrink: Option<AnsweredReduction>,
+    shrink: AnsweredReduction,
 }
 
 #[derive(Deserialize)]
@@ -112,11 +121,13 @@ struct AnsweredEffect {
     id: String,
     probability: f64,
     ambiguous_with: Vec<String>,
+    parameters: BTreeMap<String, Value>,
+    intervals: BTreeMap<String, Option<[f64; 2]>>,
 }
 
 #[derive(Deserialize)]
 struct AnsweredReduction {
-    reducible_closed: f64,
+    reducible_closed: Option<f64>,
 }
 
 /// Breaks the seal of a challenge and scores its answers. `watch` is called with the number of scored cases and the total.
@@ -125,7 +136,7 @@ struct AnsweredReduction {
 /// If a case has no diagnosis, or a sealed entry does not match its commitment.
 pub fn score(folder: &Path, watch: impl Fn(usize, usize) + Sync) -> Result<Score> {
     let folder = Folder(folder);
-    let published: Vec<Published> = files::read_csv(&folder.cases())?;
+    let published = folder.published()?;
     let sealed: Vec<Sealed> = files::read_json(&folder.sealed())?;
     let counter = Counter::new(published.len(), watch);
     let opened = published
@@ -138,7 +149,8 @@ pub fn score(folder: &Path, watch: impl Fn(usize, usize) + Sync) -> Result<Score
             let answer = files::read_json(&folder.answer(&case.case))?;
             let closed_on_fresh_runs = closed_on_fresh_runs(&folder, case, &sealed)?;
             counter.increment();
-            Ok(Opened { sealed, answer, closed_on_fresh_runs })
+            let robot = Robot::read(&folder.case(&case.case).join("robot.toml"))?;
+            Ok(Opened { robot, sealed, answer, closed_on_fresh_runs })
         })
         .collect::<Result<Vec<Opened>>>()?;
     Ok(Score::of(&opened))
@@ -230,11 +242,50 @@ impl Opened {
     }
 
     fn closed(&self) -> Option<f64> {
-        self.answer.shrink.as_ref().map(|s| s.reducible_closed)
+        self.answer.shrink.reducible_closed
+    }
+
+    /// Returns whether a false effect that is not the first has a probability above one half.
+    fn has_false_second(&self) -> bool {
+        let truth = self.truth();
+        self.answer.effects.iter().skip(1).any(|e| e.probability > LIKELY && !truth.contains(&e.id.as_str()))
+    }
+
+    /// Returns the reported numbers of the effects that are there.
+    fn measured(&self) -> Vec<Measured> {
+        let injected = self.sealed.effects.iter().filter_map(|effect| effect.parse::<ActiveEffect>().ok());
+        let of_effect = |active: ActiveEffect| {
+            let answered = self.answer.effects.iter().find(|answered| answered.id == active.effect.id());
+            answered.map_or_else(Vec::new, |answered| answered.measured(&active, &self.robot))
+        };
+        injected.flat_map(of_effect).collect()
     }
 
     fn answered(&self) -> String {
         self.first().map_or_else(|| format!("({:?})", self.answer.verdict), String::from)
+    }
+}
+
+impl AnsweredEffect {
+    fn measured(&self, active: &ActiveEffect, robot: &Robot) -> Vec<Measured> {
+        let variants = CATALOGUE.iter().filter(|known| known.id == self.id).flat_map(|known| known.variants);
+        let parameters: Vec<&Parameter> = variants.flat_map(|variant| variant.parameters).collect();
+        let number = |(name, value): Truth| {
+            let (reported, ends) = (self.parameters.get(name)?.as_f64()?, (*self.intervals.get(name)?)?);
+            let parameter = parameters.iter().find(|parameter| parameter.setting().0 == name)?;
+            // Directions differ by less than half a turn.
+            let turns = if name.ends_with("direction_deg") { ((value - reported) / 360.0).round() } else { 0.0 };
+            let value = value - 360.0 * turns;
+            Some(Measured {
+                effect: self.id.clone(),
+                parameter: name,
+                error: reported - value,
+                half_width: 0.5 * (ends[1] - ends[0]),
+                is_inside: (ends[0]..=ends[1]).contains(&value),
+                departure: parameter.departure(reported, robot),
+            })
+        };
+        truth(active).into_iter().filter_map(number).collect()
     }
 }
 
@@ -261,8 +312,10 @@ impl Score {
         let closed_error = |c: &Opened| Some((c.closed()? - c.closed_on_fresh_runs?).abs());
         let mut closed_errors: Vec<f64> = cases.iter().filter_map(closed_error).collect();
         closed_errors.sort_by(f64::total_cmp);
+        let measured: Vec<Measured> = cases.iter().flat_map(Opened::measured).collect();
         let confidently_wrong = |c: &Opened| c.probability() > SURE && !c.first_is_there();
         Score {
+            schema: SchemaNumber,
             false_alarms: share(Opened::is_null, &sees_gap),
             detected: share(|c| !c.is_null(), &sees_gap),
             top_1: share(Opened::is_single, &Opened::first_is_there),
@@ -274,6 +327,9 @@ impl Score {
             false_unknowns: share(|c| c.is_single() || c.is_pair(), &|c| c.answer.verdict == Verdict::Unknown),
             closed_error: closed_errors.get(closed_errors.len() / 2).copied(),
             confidently_wrong: share(|_| true, &confidently_wrong),
+            false_seconds: share(|_| true, &Opened::has_false_second),
+            intervals: Coverage::of(&measured),
+            measured,
             calibration: calibration.collect(),
             confusions: confusions.into_iter().map(|((truth, answer), n)| (truth, answer, n)).collect(),
             cases: cases.iter().map(Opened::scored).collect(),

@@ -12,6 +12,9 @@ use mindgap_foundations::geometry::Pose;
 use mindgap_logs::{Scene, Termination};
 use mindgap_models::simulator::rollout::REACHED_CM;
 
+/// Files of the figure.
+pub const FILES: [&str; 2] = ["paths.svg", "paths.png"];
+
 /// Writes the figure `paths` into the folder of a loop.
 ///
 /// # Errors

@@ -1,10 +1,12 @@
 //! Checks a log before it is used: it must be a complete run of this controller on this robot from this start, seen by a
 //! tracker at rest.
 
+use std::fs;
 use std::path::Path;
 
 use mindgap_core::controller::Controller;
 
+use super::robot::MAX_LOG_BYTES;
 use super::state::{DrivenRun, place_cm};
 use super::tuple_trace::TupleTrace;
 use mindgap_files as files;
@@ -42,16 +44,29 @@ pub struct LogCheck<'a> {
     pub controller: &'a Controller,
 }
 
+/// Moves the log that a robot wrote to its place. Only a regular file counts, which is complete since its robot has ended.
+///
+/// # Errors
+/// If there is none, or it is too large for a log.
+pub fn receive(out: &Path, log: &Path) -> Result<()> {
+    let failed = |what: String| Err(Error::in_file(log, what));
+    match fs::symlink_metadata(out) {
+        Err(_) => failed("was not written by the robot".into()),
+        Ok(about) if !about.is_file() => {
+            failed("is not a regular file: the robot wrote a folder, a link, a pipe or a device".into())
+        }
+        Ok(about) if about.len() > MAX_LOG_BYTES => failed(format!("is larger than {} MB", MAX_LOG_BYTES >> 20)),
+        Ok(_) => fs::rename(out, log).or_else(|e| failed(format!("cannot be written: {e}"))),
+    }
+}
+
 impl LogCheck<'_> {
     /// Reads and checks a log, and summarises the run.
     ///
     /// # Errors
     /// If the log has a defect that forbids learning from it.
     pub fn read(&self, path: &Path) -> Result<(Run, DrivenRun)> {
-        if !path.exists() {
-            return Err(Error::in_file(path, "was not written by the robot"));
-        }
-        let run = Run::read(path, |_| {})?;
+        let run = Run::read_by(path, &self.simulator.sensors())?;
         if !files::read_text(path)?.ends_with('\n') {
             return Err(Error::in_file(path, "is incomplete: its last line has no line end"));
         }

@@ -1,15 +1,16 @@
 //! Robots that a loop can drive: an external command, or a person with a brick.
 
-use std::fs;
+use std::ffi::OsStr;
 use std::io::{self, BufRead, Write};
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
-use std::thread;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use mindgap_files as files;
 use mindgap_foundations::error::{Error, Result};
-use mindgap_workers as workers;
+use mindgap_workers::program::Program;
+
+/// Largest log of one run, bytes: that of the longest controller has a third.
+pub const MAX_LOG_BYTES: u64 = 32 << 20;
 
 /// A robot that drives a controller and logs the run.
 pub trait TrialRobot {
@@ -36,51 +37,28 @@ pub struct Call<'a> {
 
 /// A robot driven by an external command, which is called with controller, scene, start, log and seed, writes the log and
 /// exits with 0.
-pub struct CommandRobot {
-    /// Command with its first arguments, separated by spaces.
-    pub command: String,
-    /// Timeout of one call.
-    pub timeout: Duration,
-}
+pub struct CommandRobot(Program);
 
 /// A person who loads the controller onto a brick, drives, and enters the path of the log.
 pub struct AskRobot;
 
-/// Polling interval of the command.
-const GLANCE: Duration = Duration::from_millis(20);
+impl CommandRobot {
+    /// Takes a command with its first arguments, as in a shell, and the timeout of one call.
+    ///
+    /// # Errors
+    /// If the command is empty or has an open quote.
+    pub fn new(command: &str, timeout: Duration) -> Result<Self> {
+        Program::new("the robot's command", command, timeout).map(CommandRobot)
+    }
+}
 
 impl TrialRobot for CommandRobot {
     fn drive(&mut self, call: &Call) -> Result<()> {
-        let mut words = self.command.split_whitespace();
-        let program = words.next().ok_or_else(|| Error::new("the robot's command is empty"))?;
-        let failed = |what: String| Error::new(format!("the robot's command {program} {what}"));
-        let mut command = Command::new(program);
-        workers::remove_rank_variables(&mut command);
-        let mut child = command
-            .args(words)
-            .args([call.controller, call.scene])
-            .arg(call.start.to_string())
-            .arg(call.out)
-            .arg(call.seed.to_string())
-            .stdin(Stdio::null())
-            // Standard output is reserved for the report of the loop.
-            .stdout(Stdio::from(io::stderr()))
-            .spawn()
-            .map_err(|e| failed(format!("cannot be started: {e}")))?;
-        let begun = Instant::now();
-        loop {
-            match child.try_wait().map_err(|e| failed(format!("cannot be waited for: {e}")))? {
-                Some(status) if status.success() => return Ok(()),
-                Some(status) => return Err(failed(format!("failed: {status}"))),
-                None if begun.elapsed() > self.timeout => {
-                    // Killing fails if it has just ended.
-                    let _ = child.kill();
-                    let _ = child.wait();
-                    return Err(failed(format!("took longer than {} s and was killed", self.timeout.as_secs_f64())));
-                }
-                None => thread::sleep(GLANCE),
-            }
-        }
+        let [controller, scene, out] =
+            [files::absolute(call.controller)?, files::absolute(call.scene)?, files::absolute(call.out)?];
+        let [start, seed] = [call.start.to_string(), call.seed.to_string()];
+        let arguments: [&OsStr; 5] = [controller.as_ref(), scene.as_ref(), start.as_ref(), out.as_ref(), seed.as_ref()];
+        self.0.run(&arguments)
     }
 }
 
@@ -103,30 +81,6 @@ impl TrialRobot for AskRobot {
         if path.as_os_str().is_empty() {
             return Err(Error::new("no log was given"));
         }
-        let log = fs::read(&path).map_err(|e| Error::in_file(&path, format!("cannot be read: {e}")))?;
-        files::write(call.out, log)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn drive(command: &str) -> Result<()> {
-        let path = Path::new("none");
-        let call = Call { controller: path, scene: path, start: 1, out: path, seed: 1 };
-        CommandRobot { command: command.into(), timeout: Duration::from_millis(200) }.drive(&call)
-    }
-
-    #[test]
-    fn failing_and_hanging_commands_are_errors() {
-        assert!(drive("true").is_ok());
-        let problem = |command: &str| drive(command).unwrap_err().to_string();
-        assert!(problem("false").starts_with("the robot's command false failed: "));
-        assert!(problem("mindgap-has-no-such-robot").contains("cannot be started"));
-        assert!(
-            problem("tail -f /dev/null --").contains("took longer than 0.2 s") || problem("sleep 9").contains("killed")
-        );
-        assert_eq!(problem(" "), "the robot's command is empty");
+        files::write(call.out, files::read_bytes(&path, MAX_LOG_BYTES)?)
     }
 }

@@ -14,7 +14,7 @@ use mindgap_learning::evolve::explore;
 use mindgap_learning::evolve::genome::GenotypeDecoder;
 use mindgap_learning::evolve::robust::{self, REFINED};
 use mindgap_learning::evolve::route::RouteMap;
-use mindgap_learning::evolve::success_probability::{Judge, ROBOTS, RUNS};
+use mindgap_learning::evolve::success_probability::{Endings, Judge, ROBOTS, RUNS};
 use mindgap_learning::evolve::task::{EvolutionTask, Judged};
 use mindgap_logs::Scene;
 use mindgap_models::simulator::ensemble::Robots;
@@ -40,6 +40,7 @@ pub const ARCHIVED: usize = 12;
 const SHOWN: usize = 5;
 
 /// The inputs of a search.
+#[derive(Clone, Copy)]
 pub struct Search<'a> {
     /// Executor of independent work items.
     pub executor: &'a dyn Executor,
@@ -87,6 +88,15 @@ impl Search<'_> {
         let all = known.controllers().chain(found).collect();
         let promising = evaluator.ranked(all, FEW_RUNS)?.controllers().take(ARCHIVED).collect();
         evaluator.ranked(promising, RUNS)
+    }
+
+    /// Returns how simulated runs of a controller end.
+    ///
+    /// # Errors
+    /// As [`best`](Self::best).
+    pub fn endings(&self, controller: &Controller) -> Result<Endings> {
+        let robots = self.robots()?;
+        self.evaluator(&robots, &[])?.judge.endings(controller, RUNS)
     }
 
     /// Returns the success probability of the best controller for each robot: an upper limit for what a search can reach.

@@ -9,10 +9,10 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 use super::Job;
-use crate::adapt::Gap;
+use crate::adapt::{Cause, Gap};
 use mindgap_files as files;
 use mindgap_foundations::error::{Error, Result};
-use mindgap_learning::evolve::success_probability::SuccessProbability;
+use mindgap_learning::evolve::success_probability::{Endings, SuccessProbability};
 use mindgap_logs::Termination;
 use mindgap_models::effects::applied::AppliedEffect;
 
@@ -85,12 +85,24 @@ pub struct Trial {
     pub predicted_paths: Vec<SimulatedPath>,
     /// The run on the robot; null until it was driven.
     pub real: Option<DrivenRun>,
+    /// Endings of simulated runs before the run.
+    #[serde(default)]
+    pub predicted_endings: Option<Endings>,
     /// Success probability after adapting to the run.
     pub chance_after: Option<SuccessProbability>,
+    /// Endings of simulated runs after adapting to the run.
+    #[serde(default)]
+    pub endings_after: Option<Endings>,
+    /// Success probability after adapting to the run by biases alone; null if no effect on the motion is used.
+    #[serde(default)]
+    pub chance_without_effects: Option<f64>,
     /// Error per step on held-out runs, before and after adapting to the others.
     pub gap: Option<Gap>,
-    /// Effects named by a diagnosis of all runs up to this one.
+    /// Effects of a diagnosis of all runs up to this one, as they were added to the simulator.
     pub effects: Vec<AppliedEffect>,
+    /// All effects that the diagnosis named, with their probabilities and rivals.
+    #[serde(default)]
+    pub causes: Vec<Cause>,
 }
 
 /// A simulated run.
@@ -134,7 +146,8 @@ impl State {
     /// Reads the state from a job's folder, or returns a new one if there is none.
     ///
     /// # Errors
-    /// If a file cannot be read, or the folder holds a loop with another simulator, scene, start, seed or step limit.
+    /// If a file cannot be read, the folder holds a loop with another simulator, scene, start, seed or step limit, or the state
+    /// names other files than its own.
     pub fn open(job: &Job) -> Result<Self> {
         let mut digest = Sha256::new();
         for path in [job.simulator, job.scene] {
@@ -143,7 +156,7 @@ impl State {
         digest.update(format!("{} {} {}", job.start, job.seed, job.max_steps));
         let digest = digest.finalize().iter().map(|byte| format!("{byte:02x}")).collect::<String>();
         let path = job.folder.join(FILE);
-        if !path.exists() {
+        if !files::in_folder(job.folder, FILE)?.exists() {
             return Ok(State {
                 schema: SCHEMA,
                 job: digest,
@@ -160,6 +173,16 @@ impl State {
         if state.schema != SCHEMA || state.job != digest {
             let what = "is of a loop with another simulator, scene, start, seed or step limit: give another folder";
             return Err(Error::in_file(&path, what));
+        }
+        for (trial, number) in state.trials.iter().zip(1..) {
+            let planned = Trial::planned(number, trial.predicted, None, Vec::new());
+            if (trial.number, &trial.controller, &trial.log) != (number, &planned.controller, &planned.log) {
+                let what = format!(
+                    "trial {number}: its files must be {} and {} in this folder",
+                    planned.controller, planned.log
+                );
+                return Err(Error::in_file(&path, what));
+            }
         }
         if state.verdict == Verdict::TrialsExhausted && state.trials.len() < job.trials {
             state.verdict = Verdict::Running;
@@ -178,13 +201,18 @@ impl State {
     /// # Errors
     /// If it cannot be written.
     pub fn write(&self, folder: &Path) -> Result<()> {
-        files::write_json(&folder.join(FILE), self)
+        files::write_json(&files::in_folder(folder, FILE)?, self)
     }
 }
 
 impl Trial {
     /// Returns a trial that is still to be driven.
-    pub fn planned(number: usize, predicted: SuccessProbability, predicted_paths: Vec<SimulatedPath>) -> Self {
+    pub fn planned(
+        number: usize,
+        predicted: SuccessProbability,
+        predicted_endings: Option<Endings>,
+        predicted_paths: Vec<SimulatedPath>,
+    ) -> Self {
         Trial {
             number,
             controller: format!("trial-{number}.toml"),
@@ -192,10 +220,19 @@ impl Trial {
             predicted,
             predicted_paths,
             real: None,
+            predicted_endings,
             chance_after: None,
+            endings_after: None,
+            chance_without_effects: None,
             gap: None,
             effects: Vec::new(),
+            causes: Vec::new(),
         }
+    }
+
+    /// Returns the file of the log of an attempt, from 0, which stays if it cannot be used.
+    pub fn attempt(&self, attempt: usize) -> String {
+        format!("trial-{}-attempt-{}.csv", self.number, attempt + 1)
     }
 }
 

@@ -59,7 +59,7 @@ impl Robot {
             runs: logs.runs.len(),
             rows: logs.rows(),
             gap_nats: diagnosis.reduction.as_ref().map(|reduction| reduction.whole.before),
-            closed: diagnosis.reduction.as_ref().map(|reduction| reduction.whole.reducible_closed),
+            closed: diagnosis.reduction.as_ref().and_then(|reduction| reduction.whole.reducible_closed),
             budget: diagnosis.budget.iter().map(|part| (part.id.clone(), part.share, part.ci95)).collect(),
             effects: diagnosis.effects.iter().map(cause).collect(),
             untestable: diagnosis.untestable.iter().map(|id| (*id).into()).collect(),

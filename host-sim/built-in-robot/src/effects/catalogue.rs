@@ -76,6 +76,8 @@ catalogue! {
         Scale::signed("cm", 1.0, 4.0, 8.0), None;
     table SonarYaw "sonar_yaw" "The sensor is misaligned."
         Scale::signed("degrees counter-clockwise", 3.0, 10.0, 20.0), None;
+    table SonarPitch "sonar_pitch" "The sensor's mount sags, and its beam meets the floor."
+        Scale::falling("cm along the floor from the sensor to where its axis meets it", 30.0, 70.0, 150.0, 50.0), None;
     table SonarBeam "sonar_beam" "The beam is wider or narrower."
         Scale::factor("factor on its angle", 0.3, 2.0, 2.5, 0.3), None;
     table SonarGhost "sonar_ghost" "An echo from something at a constant distance."
@@ -103,6 +105,10 @@ catalogue! {
     table CompassDisturbance "compass_disturbance" "Iron on the robot."
         Scale::rising("largest error of the heading in degrees", 2.0, 7.0, 15.0),
         Some(Scale::free("direction of the iron in degrees", -180.0, 70.0, 180.0));
+    table HeadingLag "heading_lag" "The tracker averages the headings of its last pictures."
+        Scale::rising("ms by which they are old in the mean", 40.0, 150.0, 350.0), None;
+    table TrackerDelay "tracker_delay" "The tracker's poses arrive late."
+        Scale::rising("ms", 40.0, 150.0, 350.0), None;
     other WheelEccentricity "wheel_eccentricity" "The wheels' hubs are off-centre."
         Scale::rising("fraction of the radius", 0.05, 0.12, 0.2), None;
     other Backlash "backlash" "Play in the gears."

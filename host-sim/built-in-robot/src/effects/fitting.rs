@@ -73,6 +73,7 @@ pub(crate) fn fit(hardware: &mut Hardware, active: &ActiveEffect) {
         Effect::SonarGhost => (hardware.sonar.ghost, hardware.sonar.ghost_cm) = (strength, detail),
         Effect::SonarDropout => hardware.sonar.loose = strength,
         Effect::SonarYaw => hardware.sonar.yaw_rad += strength.to_radians(),
+        Effect::SonarPitch => hardware.sonar.floor_cm = hardware.sonar.floor_cm.min(strength),
         Effect::SonarBeam => hardware.sonar.half_angle_rad *= strength,
         Effect::SonarLag => hardware.sonar.age_ms += strength * hardware.step_ms,
         Effect::SonarAbsorption => hardware.sonar.level_db += 20.0 * libm::log10(strength),
@@ -91,6 +92,8 @@ pub(crate) fn fit(hardware: &mut Hardware, active: &ActiveEffect) {
             let field = libm::sin(2.0 * strength.to_radians());
             hardware.tracker.iron += direction(detail.to_radians()) * field;
         }
+        Effect::HeadingLag => hardware.tracker.averaged_ms += 2.0 * strength,
+        Effect::TrackerDelay => hardware.tracker.age_ms += strength,
         Effect::WheelEccentricity => hardware.tyres.iter_mut().for_each(|tyre| tyre.eccentricity += strength),
         Effect::Backlash => hardware.motors.iter_mut().for_each(|motor| motor.play_rad += strength.to_radians()),
         Effect::CastorKick => hardware.castor.scrub_n += strength,

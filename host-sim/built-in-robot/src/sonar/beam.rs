@@ -40,7 +40,11 @@ pub(super) fn first_echo(sonar: &Sonar, sides: &[Wall], ping: &Ping, rng: &mut G
         let Some(hit) = cast(sides, sensor.position_cm, along) else { continue };
         let straight = returned(sonar, &hit);
         let mirrored = mirrored(sonar, sides, sensor.position_cm, along, &hit);
-        for echo in [Some(straight), mirrored].into_iter().flatten() {
+        let floor = floor(sonar, offset * sonar.half_angle_rad);
+        let above_floor =
+            [Some(straight), mirrored].into_iter().flatten().filter(|e| e.distance_cm < floor.distance_cm);
+        let bare_floor = Some(floor).filter(|floor| floor.distance_cm <= hit.distance_cm);
+        for echo in above_floor.chain(bare_floor) {
             let level_db = echo.level_db + sent_db + speckle_db;
             let nearer = first.is_none_or(|f| echo.distance_cm < f.distance_cm);
             if level_db > 0.0 && echo.distance_cm >= sonar.min_cm && nearer {
@@ -57,6 +61,15 @@ fn returned(sonar: &Sonar, hit: &Hit) -> Echo {
     let spread_db = 2.0 * spread_db(hit.distance_cm);
     let level_db = scattered_db(sonar, hit) - spread_db - absorbed_db(sonar, hit.distance_cm);
     Echo { distance_cm: hit.distance_cm, level_db, grazing: grazing(hit) }
+}
+
+/// Returns the echo of the floor on a ray at this angle to the axis, where a beam that points down meets it. It grazes the floor,
+/// whose grain alone scatters some of it back. Of a level beam it is infinitely far and faint.
+fn floor(sonar: &Sonar, offset_rad: f64) -> Echo {
+    let distance_cm = sonar.floor_cm / libm::cos(offset_rad);
+    let grain_db = 20.0 * libm::log10(sonar.diffuse);
+    let level_db = grain_db - 2.0 * spread_db(distance_cm) - absorbed_db(sonar, distance_cm);
+    Echo { distance_cm, level_db, grazing: 1.0 }
 }
 
 /// Returns the echo of sound that a wall reflects specularly to a second one and that returns the same way, which makes the

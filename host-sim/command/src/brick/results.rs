@@ -26,6 +26,8 @@ pub struct BrickResults {
     pool_bytes: usize,
     /// State of the motors A, B and C at the end: a power in percent, `brake` or `coast`.
     motors: [String; MOTORS.len()],
+    /// Sensor ports, 1 to 4, that the program read although no option configures them. They read as empty.
+    unconfigured_ports: Vec<usize>,
     /// What the program did, in order of time.
     events: Vec<TimedEvent>,
     /// Number of further events, which are not listed.
@@ -95,8 +97,9 @@ enum Event {
     },
 }
 
-impl From<&Report> for BrickResults {
-    fn from(report: &Report) -> Self {
+impl BrickResults {
+    /// Returns the results of a run whose program read `unconfigured_ports`.
+    pub fn new(report: &Report, unconfigured_ports: Vec<usize>) -> Self {
         let file = |(name, content): (&String, &Vec<u8>)| (name.clone(), String::from_utf8_lossy(content).into_owned());
         BrickResults {
             schema: SchemaNumber,
@@ -106,6 +109,7 @@ impl From<&Report> for BrickResults {
             instructions: report.instructions,
             pool_bytes: report.pool_bytes,
             motors: report.motors.map(drive_word),
+            unconfigured_ports,
             events: report.events.iter().map(TimedEvent::from).collect(),
             further_events: report.further_events,
             files: report.files.iter().map(file).collect(),

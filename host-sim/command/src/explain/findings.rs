@@ -83,6 +83,42 @@ pub const FINDINGS: &[Entry] = &[
         check: "Watch the tracker's video at these times for a marker that is partly hidden.",
     },
     Entry {
+        id: "counter_wraps",
+        what: "A rotation counter starts again after each turn; it is left out.",
+        imitated_by: "a robot that never turns its wheels by more than a turn",
+        check: "Turn the wheel by hand: the counter should grow beyond 360.",
+    },
+    Entry {
+        id: "counter_jump",
+        what: "A rotation counter jumps farther than the wheel can turn; these counts are left out.",
+        imitated_by: "a full_speed_cm_s or wheel_diameter_cm in robot.toml that is far too small",
+        check: "See whether the program resets its counters while it logs, or whether they overflow.",
+    },
+    Entry {
+        id: "counter_backwards",
+        what: "A rotation counter falls while its wheel is commanded forwards; it is left out.",
+        imitated_by: "exchanged or reversed motors",
+        check: "Turn the wheel forwards by hand: the counter should grow.",
+    },
+    Entry {
+        id: "counter_unit",
+        what: "A rotation counter counts far more or less than the commanded rotation; it is left out.",
+        imitated_by: "a full_speed_cm_s or wheel_diameter_cm in robot.toml that is far off",
+        check: "Turn the wheel once by hand: the counter should grow by 360.",
+    },
+    Entry {
+        id: "gyro_sign",
+        what: "The gyro is negative in turns to the left; it is left out.",
+        imitated_by: "headings that are counted clockwise, where there are no counters",
+        check: "Turn the robot to the left by hand: gyro_deg_s should be positive.",
+    },
+    Entry {
+        id: "gyro_unit",
+        what: "The gyro shows far more or less than the turn of the robot, as in radians per second; it is left out.",
+        imitated_by: "a robot that hardly turns as commanded, where there are neither poses nor counters",
+        check: "Turn the robot once by hand within ten seconds: gyro_deg_s should show about 36.",
+    },
+    Entry {
         id: "moves_at_zero_command",
         what: "The robot moves long after its commands became zero; these poses are left out.",
         imitated_by: "a steep slope or a push by hand",
@@ -93,6 +129,13 @@ pub const FINDINGS: &[Entry] = &[
         what: "A run begins while the robot moves; these poses are left out.",
         imitated_by: "a tracker that settles during the first rows",
         check: "Start logging before the first command.",
+    },
+    Entry {
+        id: "heading_constant",
+        what: "The heading never changes although the commands turn the robot: the track has no rotation, or another axis than z \
+               points upwards.",
+        imitated_by: "a robot that cannot turn",
+        check: "Turn the robot by hand: heading_deg should change.",
     },
     Entry {
         id: "frame_turned",
@@ -148,5 +191,48 @@ pub const FINDINGS: &[Entry] = &[
         what: "A number such as 0 or 255 stands for a missing reading; these cells are emptied.",
         imitated_by: "a sonar_ghost at exactly this number",
         check: "Point the sensor into an empty room and see which number it reports.",
+    },
+    Entry {
+        id: "echo_stuck",
+        what: "Readings stay exactly equal while the robot moves far; readings are not compared.",
+        imitated_by: "a wall that the robot follows at one distance",
+        check: "Wave a hand in front of the sensor while it logs.",
+    },
+    Entry {
+        id: "echo_repeated",
+        what: "Readings repeat the one before although the robot drove on: old readings are logged again; readings are not \
+               compared.",
+        imitated_by: "sonar_lag",
+        check: "Log a counter of the sensor's readings next to them.",
+    },
+    Entry {
+        id: "echo_saturated",
+        what: "Readings pile up at one number, although walls are farther away; readings are not compared.",
+        imitated_by: "sonar_crosstalk or sonar_ghost at this number",
+        check: "Move a board away from the sensor and note where the reading stops growing.",
+    },
+    Entry {
+        id: "path_outside_arena",
+        what: "Poses lie outside the arena of scene.toml; readings are not compared.",
+        imitated_by: "a tracker whose origin is not at the arena's corner",
+        check: "Measure the arena, and put the robot into its corner at (0, 0).",
+    },
+    Entry {
+        id: "path_through_obstacle",
+        what: "The path crosses obstacles of scene.toml; readings are not compared.",
+        imitated_by: "a tracker whose frame is shifted",
+        check: "Measure the lower-left corner of each obstacle, not its centre.",
+    },
+    Entry {
+        id: "wall_moved",
+        what: "Readings of one wall place it elsewhere than scene.toml, while those of others fit; readings are not compared.",
+        imitated_by: "a surface of this wall that returns echoes from behind it",
+        check: "Measure the distance of this wall from the arena's corner.",
+    },
+    Entry {
+        id: "motion_scale",
+        what: "The robot moves and turns by one factor of what is commanded, above 1.6 or below 0.6; it is only reported.",
+        imitated_by: "drive_scale",
+        check: "Time a straight metre at command 100 by a stopwatch, and compare it with the log.",
     },
 ];

@@ -1,21 +1,18 @@
-//! Options of `mindgap export --format nxc-collect`.
+//! Options of `mindgap export` for programs that collect data.
 
 use std::path::Path;
 
 use clap::Args;
-use mindgap_controller_export::collect::{CollectOptions, Commands};
-use mindgap_controller_export::names::BrickName;
-use mindgap_controller_export::onboard::Safety;
-use mindgap_controller_export::wiring::Wiring;
+use mindgap_controller_export::collect::Commands;
 
 use crate::warn;
 use mindgap_files as files;
 use mindgap_foundations::error::{Error, Result};
 use mindgap_logs::Run;
 
-/// Options of the format nxc-collect; a script replaces them.
+/// Options of the formats nxc-collect and pybricks-collect; a script replaces them.
 #[derive(Args)]
-#[command(next_help_heading = "Options of nxc-collect without a script")]
+#[command(next_help_heading = "Options of nxc-collect and pybricks-collect without a script")]
 pub struct Collect {
     /// Time between two rows of the log, ms; also the controllers' step.
     #[arg(long, default_value_t = 400, conflicts_with = "input")]
@@ -32,22 +29,21 @@ pub struct Collect {
 }
 
 impl Collect {
-    /// Returns the options of a program that drives at random.
-    pub fn options(&self, program: BrickName, wiring: Wiring) -> CollectOptions {
+    /// Returns the step time and the commands of a program that drives at random.
+    pub fn random(&self) -> (u16, Commands) {
         let Collect { step_ms, steps, near_cm, seed } = *self;
-        let commands = Commands::Random { steps, near_cm, seed };
-        CollectOptions { program, wiring, safety: Safety::default(), step_ms, commands }
+        (step_ms, Commands::Random { steps, near_cm, seed })
     }
 }
 
 /// Required columns of a script; it may have those of a log as well.
 const COLUMNS: [&str; 3] = ["t_ms", "left", "right"];
 
-/// Returns the options of a program that replays the commands of a run or of a script from `diagnose --next-experiment`.
+/// Returns the step time and the commands of a run, or of a script from `diagnose --next-experiment`.
 ///
 /// # Errors
 /// If the file is neither, or its steps are not all the same whole number of milliseconds.
-pub fn script(path: &Path, program: BrickName, wiring: Wiring) -> Result<CollectOptions> {
+pub fn script(path: &Path) -> Result<(u16, Commands)> {
     let rows = Run::parse(path, &files::read_text(path)?, &COLUMNS, warn)?.rows;
     let step_ms = rows.at(1).t_ms - rows.at(0).t_ms;
     let is_even = rows.pairs().all(|pair| pair[1].t_ms - pair[0].t_ms == step_ms);
@@ -58,6 +54,5 @@ pub fn script(path: &Path, program: BrickName, wiring: Wiring) -> Result<Collect
         ));
     }
     let powers = rows.iter().map(|row| [row.left, row.right].map(|power| power.round() as i8)).collect();
-    let commands = Commands::Script(powers);
-    Ok(CollectOptions { program, wiring, safety: Safety::default(), step_ms: step_ms as u16, commands })
+    Ok((step_ms as u16, Commands::Script(powers)))
 }

@@ -25,15 +25,18 @@ pub struct Evidence {
     pub without: Vec<Bin>,
     /// Logged minus predicted with all effects, in the same ranges of the covariate.
     pub with: Vec<Bin>,
+    /// The range sensor concerned, where there are several.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sensor: Option<String>,
 }
 
 /// Returns the evidence for each of the chosen effects, if there are enough rows for a table.
 pub fn evidence(found: &Confirmed, context: &FitContext) -> Vec<Evidence> {
     let applied = found.chosen.applied(&context.baseline().robot);
-    let with = Channel::ALL.map(|channel| residuals(channel, &found.chosen.effects(), context.rows));
+    let with = Channel::SIMULATED.map(|channel| residuals(channel, &found.chosen.effects(), context.rows));
     let of = |effect: usize| {
         let others = chain_without(&applied, effect, context);
-        let best = Channel::ALL.into_iter().filter_map(|channel| {
+        let best = Channel::SIMULATED.into_iter().filter_map(|channel| {
             let without = residuals(channel, &others, context.rows);
             let pairs = context.rows.rows.iter().zip(without).zip(&with[channel.index()]);
             let known: Vec<Known> = pairs.filter_map(|((row, a), b)| Some((row, [a?, (*b)?]))).collect();
@@ -63,7 +66,10 @@ fn along_best_covariate(effect: &str, channel: Channel, known: &[Known]) -> Opti
         let points = |of: usize| known.iter().map(|(row, residuals)| (value(row), residuals[of])).collect();
         let (without, with): (Vec<Bin>, Vec<Bin>) = (table(points(0)), table(points(1)));
         let reduction: f64 = without.iter().zip(&with).map(|(a, b)| reduction(a, b)).sum();
-        (reduction, Evidence { effect: effect.into(), channel, depends_on, unit: unit(channel), without, with })
+        (
+            reduction,
+            Evidence { effect: effect.into(), channel, depends_on, unit: unit(channel), without, with, sensor: None },
+        )
     });
     tables.max_by(|a, b| a.0.total_cmp(&b.0))
 }

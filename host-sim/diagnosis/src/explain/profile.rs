@@ -25,6 +25,9 @@ pub struct ResidualProfile {
     /// The mean residual in ranges of the covariate, from low to high.
     #[serde(rename = "shape")]
     pub bins: Vec<Bin>,
+    /// The range sensor concerned, where there are several.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sensor: Option<String>,
 }
 
 /// A range of the covariate.
@@ -92,7 +95,7 @@ fn profile(channel: Channel, effects: &EffectChain, sample: &Sample) -> Option<R
         (*name, table(points))
     });
     let (depends_on, bins) = tables.max_by(|a, b| strength(&a.1).total_cmp(&strength(&b.1)))?;
-    Some(ResidualProfile { channel, depends_on, unit: unit(channel), bins })
+    Some(ResidualProfile { channel, depends_on, unit: unit(channel), bins, sensor: None })
 }
 
 /// Returns the covariates on which a channel may depend.
@@ -103,9 +106,9 @@ pub(super) fn variables(channel: Channel) -> &'static [Variable] {
 /// Returns the unit of a channel's residuals.
 pub(super) fn unit(channel: Channel) -> &'static str {
     match channel {
-        Channel::Forward | Channel::Lateral | Channel::EchoValue => "cm",
-        Channel::Turn => "deg",
+        Channel::Turn | Channel::Gyro => "deg",
         Channel::EchoRate => "share of rows with a reading",
+        _ => "cm",
     }
 }
 

@@ -32,6 +32,9 @@ pub struct Stratum {
     /// Its share of the channel's gap.
     #[serde(serialize_with = "rounding::number")]
     pub share: f64,
+    /// The range sensor concerned, where there are several.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sensor: Option<String>,
 }
 
 /// A name, and a test of the rows that it describes.
@@ -109,7 +112,7 @@ pub fn strata(found: &Confirmed, verdict: Verdict, context: &FitContext) -> Vec<
     }
     let excess = excess(found, verdict);
     let of_channel = |channel: Channel| of_channel(channel, &excess.of(channel), context);
-    let mut strata: Vec<(f64, Stratum)> = Channel::ALL.into_iter().filter_map(of_channel).collect();
+    let mut strata: Vec<(f64, Stratum)> = Channel::SIMULATED.into_iter().filter_map(of_channel).collect();
     strata.sort_by(|a, b| b.0.total_cmp(&a.0));
     strata.into_iter().map(|(_, stratum)| stratum).collect()
 }
@@ -164,7 +167,7 @@ fn ranked(channel: Channel, (context, holds): &Context, excess: &[f64], all: f64
     let carries = of_rows > EVERYWHERE || (share > LIFT * of_rows && share > LEAST_SHARE && ci95[0] > 0.0);
     // Strata of few rows and strata of nearly all rows are less informative than those in between.
     let rank = (share - of_rows) * share;
-    let stratum = Stratum { channel, context, gap: gap / count, ci95, share };
+    let stratum = Stratum { channel, context, gap: gap / count, ci95, share, sensor: None };
     (count > 0.0).then_some(Ranked { rank, carries, stratum })
 }
 

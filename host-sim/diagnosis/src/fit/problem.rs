@@ -44,31 +44,49 @@ impl<'a> Problem<'a> {
         best.unwrap_or_else(|| Point::new(&vec![0.0; bounds.len()], terms))
     }
 
+    /// Returns the value at a point on the rows of a sketch, plus `further` nats over all rows.
+    pub fn sketched_value(&self, at: &[f64], further: f64) -> f64 {
+        let (sample, untouched) = self.sketched();
+        let share = sample.rows.len() as f64 / self.context.rows.rows.len().max(1) as f64;
+        Point::new(at, |at| self.terms(&SensorCache::new(sample, None), &untouched, at)).value() + share * further
+    }
+
     /// Iterates to convergence on all rows and cross-validates the result.
     pub fn converge(self, sketch: Point) -> Fitted {
+        self.finish(sketch, MOST_ITERATIONS, MOST_STEPS_OF_ONE)
+    }
+
+    /// Cross-validates a sketch on all rows as it is.
+    pub fn settle(self, sketch: Point) -> Fitted {
+        self.finish(sketch, 0, 0)
+    }
+
+    fn finish(self, sketch: Point, iterations: usize, steps_of_one: usize) -> Fitted {
         let Problem { hypothesis, untouched, context } = self;
         let rows = context.rows;
         let (bounds, cache) = (hypothesis.bounds(), SensorCache::new(rows, None));
         let terms = |at: &[f64]| with_prior(&cache, &hypothesis, untouched, at);
-        let climb = |from: Point| {
-            climb_from(&bounds, from, MOST_ITERATIONS, TOLERANCE_NATS, terms).into_maximum(&bounds, terms)
-        };
+        let climb =
+            |from: Point| climb_from(&bounds, from, iterations, TOLERANCE_NATS, terms).into_maximum(&bounds, terms);
         let mut found = climb(if rows.sketch().is_none() { sketch } else { Point::new(&sketch.at, terms) });
-        for _ in 0..MOST_STEPS_OF_ONE {
+        for _ in 0..steps_of_one {
             let Some(further) = single_parameter_step(&bounds, &found, TOLERANCE_NATS, terms) else { break };
             found = climb(further);
         }
         let noise = hypothesis.noise(rows, &found.at);
         let without = without_each_block(&found, &bounds, rows);
-        let cross_validated = hypothesis.scores_by_block(&without, noise, untouched, rows);
+        let (witnesses, _) = hypothesis.witnesses(rows, &found.at);
+        let cross_validated = hypothesis.scores_by_block(&without, noise, &witnesses, untouched, rows);
         let scores = cache.scores(&hypothesis, &found.at, untouched);
         drop(cache);
+        let penalty = complexity_penalty(&found, &hypothesis, &bounds);
         Fitted {
             errors: jackknife_errors(&found.at, &without),
-            complexity_penalty: complexity_penalty(&found, &hypothesis, &bounds),
+            complexity_penalties: if hypothesis.moves() { [penalty, 0.0] } else { [0.0, penalty] },
             values: found.at,
             hypothesis,
             noise,
+            witnesses,
             scores,
             cross_validated,
         }

@@ -50,7 +50,8 @@ fn worse_effect_is_swapped_for_a_better_one() {
     let rows = identification(&baseline, rows([1.0, 1.0], 0.0));
     let context = FitContext::new(&rows, METHOD);
     let fits = Fits::of(&context);
-    let selection = Selection::new(&fits, &context);
+    let neighbours = Neighbours::default();
+    let selection = Selection::new(&fits, &neighbours, &context);
     let worse = fits.singles.iter().find(|f| f.ids() == ["longer_to_the_left"]).expect("a fit").clone();
     let (swapped, slots) = selection.swap_best(worse);
     assert_eq!(swapped.ids(), ["longer"]);
@@ -97,7 +98,8 @@ fn by_channel(effects: &[&'static Effect], [forward, reading]: [f64; 2], context
 fn further_effect_has_to_exceed_model_form_error() {
     with_two_rows(|context| {
         let fits = Fits { null: by_channel(&[], [0.0; 2], context), singles: Vec::new() };
-        let selection = Selection::new(&fits, context);
+        let neighbours = Neighbours::default();
+        let selection = Selection::new(&fits, &neighbours, context);
         let so_far = by_channel(&[&LONGER], [50.0, 0.0], context);
         let is_worth = |more: [f64; 2]| {
             let fit = by_channel(&[&LONGER, &FARTHER], [50.0 + more[0], more[1]], context);
@@ -120,9 +122,9 @@ fn nats_explained_by_the_simulator_s_own_effects_are_known() {
             identification(&baseline, observations(8, 10, move |_, at| Made { off: off(at), ..Made::default() }));
         FitContext::new(&rows, METHOD).already_explained
     };
-    assert_eq!(explained(Vec::new()), [0.0; 5]);
+    assert_eq!(explained(Vec::new()), [0.0; Channel::COUNT]);
     let [forward, others @ ..] = explained(vec![AppliedEffect::new(&faster, &[1.4], &robot())]);
-    assert!(forward > 20.0 && others == [0.0; 4], "{forward} {others:?}");
+    assert!(forward > 20.0 && others == [0.0; Channel::COUNT - 1], "{forward} {others:?}");
 }
 
 /// Of a thousand nats that the simulator's own effects explain, eighty could be their model-form error.

@@ -82,7 +82,8 @@ fn of_commands(logs: &Logs, holds: &Holdings) -> Vec<String> {
     missing
 }
 
-fn of_sensor(sensor: &Ultrasonic, distance_cm: Range, alpha_deg: Range) -> Vec<String> {
+/// What is missing for a range sensor.
+pub fn of_sensor(sensor: &Ultrasonic, distance_cm: Range, alpha_deg: Range) -> Vec<String> {
     let max_cm = sensor.max_cm;
     let mut missing = Vec::new();
     if distance_cm.high < (1.0 - QUARTER) * max_cm {

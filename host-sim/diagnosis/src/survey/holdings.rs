@@ -5,18 +5,19 @@ use std::collections::{BTreeMap, BTreeSet};
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use crate::excitation::Detectable;
 use mindgap_foundations::statistics::rounding;
 use mindgap_foundations::statistics::summary::median;
-use mindgap_logs::{Logs, Run, Ultrasonic, rows, samples};
+use mindgap_logs::{Logs, Row, Run, Ultrasonic, rows, samples};
 
 /// Amount, rates, ranges and coverage of logs. Ranges are none where there is nothing.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Holdings {
-    /// Runs.
+    /// Number of runs.
     pub runs: usize,
-    /// Rows of all runs.
+    /// Number of rows.
     pub rows: usize,
-    /// Steps with a pose at both ends.
+    /// Number of steps with a pose at both ends.
     pub steps: usize,
     /// Duration of all runs, s.
     #[serde(serialize_with = "rounding::number")]
@@ -24,7 +25,7 @@ pub struct Holdings {
     /// Median time between rows, ms.
     #[serde(serialize_with = "rounding::number")]
     pub step_ms: f64,
-    /// Of a hundred rows 95 come this near to that, ms.
+    /// 95 % of the times between rows are within this of the median, ms.
     #[serde(serialize_with = "rounding::number")]
     pub jitter_ms: f64,
     /// Share of rows with a pose.
@@ -37,35 +38,84 @@ pub struct Holdings {
     pub left: Option<Range>,
     /// Commands of the right motor.
     pub right: Option<Range>,
-    /// Speed ahead, cm/s.
+    /// Forward speed, cm/s.
     pub forward_cm_s: Option<Range>,
-    /// Turning speed to the left, degrees/s.
+    /// Turn rate to the left, degrees/s.
     pub turn_deg_s: Option<Range>,
     /// Readings, cm.
     pub reading_cm: Option<Range>,
-    /// D where a pose is known and a wall is ahead, cm.
+    /// Distance D where a pose is known and a wall is ahead, cm.
     pub distance_cm: Option<Range>,
-    /// α there, degrees.
+    /// Incidence angle α where a pose is known and a wall is ahead, degrees.
     pub alpha_deg: Option<Range>,
-    /// Share of the pairs of commands, in cells of 20 by 20, that occur.
+    /// Share of the pairs of commands that occur, in cells of 20 by 20.
     #[serde(serialize_with = "rounding::number")]
     pub command_coverage: f64,
-    /// Share of what the sensor can face, in tenths of its range by 15°, that occurs.
+    /// Share of the pairs of D and α that occur, in cells of a tenth of the range by 15°.
     #[serde(serialize_with = "rounding::number")]
     pub sensor_coverage: f64,
-    /// The median number of steps for which a pair of commands is held.
+    /// What the robot measures of its own motion, and what a diagnosis reads from it.
+    pub witnesses: Vec<Witness>,
+    /// Median number of steps for which a pair of commands is held.
     pub held_steps: f64,
-    /// The largest such number.
+    /// Maximum number of steps for which a pair of commands is held.
     pub longest_held_steps: u32,
+    /// What the logs contain of further range sensors.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub sensors: Vec<Heard>,
+    /// The smallest strength of each effect that a diagnosis against `kinematic` would show.
+    pub detectable: Vec<Detectable>,
 }
+
+/// What a further range sensor measures.
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+pub struct Heard {
+    /// Its name.
+    pub sensor: String,
+    /// Share of rows with a reading.
+    #[serde(serialize_with = "rounding::number")]
+    pub with_reading: f64,
+    /// Readings, cm.
+    pub reading_cm: Option<Range>,
+    /// Distance D where a pose is known and a wall is ahead, cm.
+    pub distance_cm: Option<Range>,
+    /// Incidence angle α where a pose is known and a wall is ahead, degrees.
+    pub alpha_deg: Option<Range>,
+    /// Share of the pairs of D and α that occur, in cells of a tenth of the range by 15°.
+    #[serde(serialize_with = "rounding::number")]
+    pub sensor_coverage: f64,
+}
+
+/// A column, or a pair of them, that the robot itself measures.
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+pub struct Witness {
+    /// The columns.
+    pub columns: &'static str,
+    /// Share of rows that have them.
+    #[serde(serialize_with = "rounding::number")]
+    pub rows: f64,
+    /// What a diagnosis reads from them.
+    pub adds: &'static str,
+}
+
+/// Whether a row has some columns.
+type HasColumns = fn(&Row) -> bool;
+
+/// Columns, what a diagnosis reads from them, and whether a row has them.
+const WITNESSES: [(&str, &str, HasColumns); 2] = [
+    ("rot_left_deg, rot_right_deg", "the motion up to the wheels, where nobody tracked the robot", |row| {
+        row.rot_left_deg.is_some() && row.rot_right_deg.is_some()
+    }),
+    ("gyro_deg_s", "the turns of the body, where nobody tracked the robot", |row| row.gyro_deg_s.is_some()),
+];
 
 /// Least and largest of some numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Range {
-    /// Least.
+    /// Smallest value.
     #[serde(serialize_with = "rounding::number")]
     pub low: f64,
-    /// Largest.
+    /// Largest value.
     #[serde(serialize_with = "rounding::number")]
     pub high: f64,
 }
@@ -113,8 +163,35 @@ impl Holdings {
                 [COMMAND_CELLS, COMMAND_CELLS],
             ),
             sensor_coverage: faced.coverage,
+            witnesses: WITNESSES
+                .into_iter()
+                .map(|(columns, adds, is_there)| Witness {
+                    columns,
+                    rows: share(rows().filter(is_there).count()),
+                    adds,
+                })
+                .collect(),
             held_steps: median(held.iter().map(|n| f64::from(*n))),
             longest_held_steps: held.into_iter().max().unwrap_or(0),
+            sensors: Vec::new(),
+            detectable: Vec::new(),
+        }
+    }
+}
+
+impl Heard {
+    /// Counts the readings of logs as this sensor heard them.
+    pub fn of(logs: &Logs, sensor: String) -> Self {
+        let rows = || logs.runs.iter().flat_map(|run| &run.rows);
+        let readings_cm = || rows().filter_map(|row| row.echo_cm);
+        let faced = Faced::of(logs);
+        Heard {
+            sensor,
+            with_reading: readings_cm().count() as f64 / rows().count().max(1) as f64,
+            reading_cm: Range::of(readings_cm()),
+            distance_cm: faced.distance_cm,
+            alpha_deg: faced.alpha_deg,
+            sensor_coverage: faced.coverage,
         }
     }
 }

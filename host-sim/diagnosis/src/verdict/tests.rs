@@ -1,7 +1,9 @@
 use super::*;
 use crate::calibration::Judgement;
+use crate::confirm::unconfirmed::Unconfirmed;
 use crate::fit::{FitContext, Fitted};
 use crate::gain::Gain;
+use crate::outliers::Outliers;
 use crate::remainder::remainders;
 use crate::slot::{FurtherGain, Slot};
 use crate::test_support::*;
@@ -75,6 +77,19 @@ fn no_gain_is_no_gap() {
 }
 
 #[test]
+fn what_was_found_and_not_confirmed_is_no_silence() {
+    with_two_rows(|context| {
+        let unconfirmed = vec![Unconfirmed { id: "longer", found_nats: 244.0, confirmed_nats: -16.0, sensor: None }];
+        let found = Confirmed { unconfirmed, ..confirmed(&[], &[0.0; 2], context) };
+        assert_eq!(concluded(&found).verdict, Verdict::Unknown);
+        let clump =
+            Outliers { channel: Channel::Turn, run: Some(3), place_cm: None, share: 0.2, nats: 30.0, sensor: None };
+        let found = Confirmed { outliers: vec![clump], ..confirmed(&[], &[0.0; 2], context) };
+        assert_eq!(concluded(&found).verdict, Verdict::Unknown);
+    });
+}
+
+#[test]
 fn effect_without_remainder_is_known() {
     with_two_rows(|context| {
         // Fifteen nats beyond the gate of five: five times strong evidence.
@@ -100,6 +115,23 @@ fn rivals_are_named_and_lower_the_probability() {
         let doubt = libm::exp(-0.5) + libm::exp(-18.0);
         let expected = logistic(5.0) * 0.9 * logistic(4.0) / (1.0 + doubt);
         assert!((effects[0].probability - expected).abs() < 1e-12, "{} {expected}", effects[0].probability);
+    });
+}
+
+const LATENCY: Effect = Effect { id: "latency", ..LONGER };
+const TRACKER_DELAY: Effect = Effect { id: "tracker_delay", ..LONGER };
+
+#[test]
+fn old_poses_are_named_as_rivals_and_leave_no_doubt_about_a_delay() {
+    with_two_rows(|context| {
+        let fit = |effect: &'static Effect| made_up(&[effect], &[0.5], &[10.0; 2], context);
+        let effects = |effect: &'static Effect, rival: &'static Effect| {
+            let slots = vec![slot(vec![fit(effect), fit(rival)], context)];
+            effects_of(concluded(&Confirmed { slots, ..confirmed(&[effect], &[10.0; 2], context) }), Verdict::Known)
+        };
+        let [late, longer] = [effects(&LATENCY, &TRACKER_DELAY), effects(&LONGER, &TRACKER_DELAY)];
+        assert_eq!([&late[0].ambiguous_with, &longer[0].ambiguous_with], [&["tracker_delay"]; 2]);
+        assert!((late[0].probability - 2.0 * longer[0].probability).abs() < 1e-12);
     });
 }
 
@@ -225,10 +257,11 @@ fn effect_within_the_error_of_adequacy_is_partly_known() {
     });
 }
 
-#[test]
-fn equally_probable_effects_are_sorted_by_share() {
-    let effect = |id: &'static str, probability: f64| NamedEffect {
+/// Makes a named effect without a share.
+fn effect(id: &'static str, probability: f64) -> NamedEffect {
+    NamedEffect {
         place: None,
+        sensor: None,
         id,
         probability,
         parameters: Map::new(),
@@ -236,8 +269,24 @@ fn equally_probable_effects_are_sorted_by_share() {
         share: None,
         intervals: Map::new(),
         at_bound: Vec::new(),
-    };
-    let part = |id: &str, share: f64| Part { id: id.into(), share, ci95: [share; 2] };
+        witness: Vec::new(),
+        ruler: None,
+    }
+}
+
+#[test]
+fn one_of_several_that_explains_next_to_nothing_is_doubtful() {
+    let part = |id: &str, share: f64| Part { id: id.into(), share, ci95: [share; 2], sensor: None };
+    let budget = [part("slip", 0.95), part("track_width", 0.05)];
+    let both = with_shares(vec![effect("slip", 0.9), effect("track_width", 0.8)], &budget);
+    assert_eq!(both.iter().map(|e| (e.id, e.probability)).collect::<Vec<_>>(), [("slip", 0.9), ("track_width", 0.5)]);
+    let alone = with_shares(vec![effect("track_width", 0.8)], &budget);
+    assert_eq!(alone[0].probability, 0.8, "scatter may be the larger part");
+}
+
+#[test]
+fn equally_probable_effects_are_sorted_by_share() {
+    let part = |id: &str, share: f64| Part { id: id.into(), share, ci95: [share; 2], sensor: None };
     let budget = [part("slope", 0.1), part("latency", 0.2), part("slip", 0.7)];
     let effects = vec![effect("slope", 0.9), effect("latency", 0.901), effect("slip", 0.5)];
     let sorted = with_shares(effects, &budget);

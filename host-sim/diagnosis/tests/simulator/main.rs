@@ -7,6 +7,7 @@ mod gap_apply;
 mod made_up;
 mod metamorphic;
 mod own_effect;
+mod sampling;
 mod skid;
 mod slow_drive;
 mod turning_loss;

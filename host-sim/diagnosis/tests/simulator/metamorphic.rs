@@ -9,6 +9,7 @@ use mindgap_diagnosis::verdict::NamedEffect;
 use mindgap_foundations::geometry::{Pose, Wall, direction, wrap_rad};
 use mindgap_foundations::motion::Motion;
 use mindgap_foundations::random::generator;
+use mindgap_foundations::statistics::rounding::three_digits;
 use mindgap_learning::evaluation::predictions;
 use mindgap_logs::{Logs, Row, Run, Scene};
 use mindgap_models::effects::Candidate;
@@ -151,7 +152,8 @@ fn a_robot_ten_times_as_large_has_the_same_causes() {
         for (effect, name, factor) in [("latency", "ms", 1.0), ("turn_loss", "cm_per_rad", scale)] {
             let [size, expected] = [&scaled, &of].map(|effects| {
                 let found = effects.iter().find(|found| found.id == effect).expect(effect);
-                found.parameters[name].as_f64().expect("a number")
+                // As people read it.
+                three_digits(found.parameters[name].as_f64().expect("a number"))
             });
             assert!((size / (factor * expected) - 1.0).abs() < 0.015, "{scale}: {effect} {size} for {expected}");
         }

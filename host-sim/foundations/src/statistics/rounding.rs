@@ -35,3 +35,11 @@ pub fn optional<S: Serializer>(value: &Option<f64>, to: S) -> Result<S::Ok, S::E
 pub fn interval<S: Serializer>(value: &[f64; 2], to: S) -> Result<S::Ok, S::Error> {
     value.map(four_decimals).serialize(to)
 }
+
+/// Serialises an optional interval with four decimals, for `serialize_with`.
+///
+/// # Errors
+/// Returns the serializer's errors.
+pub fn optional_interval<S: Serializer>(value: &Option<[f64; 2]>, to: S) -> Result<S::Ok, S::Error> {
+    value.map(|ends| ends.map(four_decimals)).serialize(to)
+}

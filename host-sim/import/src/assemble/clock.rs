@@ -1,6 +1,6 @@
 //! Finds one clock for commands and poses: the clock they share, or an alignment by their motion.
 
-use crate::clocks::{Clocks, align, lag};
+use crate::clocks::{Clocks, align, gains, lag};
 use crate::motion::CumulativeMotion;
 use crate::recording::Commands;
 use crate::report::ClocksReport;
@@ -11,10 +11,10 @@ use mindgap_logs::{Robot, Row};
 use super::rows::Prepared;
 
 /// Up to this lag of motion behind commands may be the robot's own: with no more, the clocks count as one.
-const MAX_LAG_MS: f64 = 1000.0;
+pub const MAX_LAG_MS: f64 = 1000.0;
 /// Commands and poses on one clock leave at most this fraction of the motion unexplained, whatever the robot's faults; those of
 /// two different drives leave about 0.6, since both mostly go ahead.
-const MAX_UNEXPLAINED: f64 = 0.45;
+pub const MAX_UNEXPLAINED: f64 = 0.45;
 
 /// Finds how the clocks of commands and poses are related. `is_one_clock` says that they are known to be the same, `offset_ms`
 /// is the lead of the poses' clock if the user states it.
@@ -30,12 +30,13 @@ pub fn aligned(
     let commanded = commanded(&prepared.commands, robot);
     let observed = prepared.track.motion();
     let stated_ms = offset_ms.unwrap_or(0.0);
-    let shifted: Vec<CumulativeMotion> =
-        observed.iter().map(|m| CumulativeMotion { t_ms: m.t_ms - stated_ms, ..*m }).collect();
+    let shifted = shifted(&observed, stated_ms);
     let lag = lag(&commanded, &shifted, MAX_LAG_MS);
-    let report = |clocks: Clocks, shared, lag_ms, unexplained| {
+    let report = |clocks: Clocks, shared, lag_ms: Option<f64>, unexplained| {
         let Clocks { offset_ms, drift } = clocks;
-        (clocks, ClocksReport { shared, offset_ms, drift, lag_ms, unexplained })
+        let lagging = Clocks { offset_ms: offset_ms + lag_ms.unwrap_or(0.0), drift };
+        let [rotation_gain, travel_gain] = gains(&lagging, &commanded, &observed);
+        (clocks, ClocksReport { shared, offset_ms, drift, lag_ms, unexplained, travel_gain, rotation_gain })
     };
     if offset_ms.is_some() || lag.is_some_and(|(_, unexplained)| unexplained <= MAX_UNEXPLAINED) {
         let (lag_ms, unexplained) = lag.unzip();
@@ -62,13 +63,35 @@ pub fn aligned(
     Err(Error::in_file(&prepared.file, what))
 }
 
+/// Returns whether the motion follows the commands only if the robot is taken to turn the opposite way.
+pub fn is_mirrored(prepared: &Prepared, robot: &Robot, is_one_clock: bool, offset_ms: Option<f64>) -> bool {
+    let commanded = commanded(&prepared.commands, robot);
+    let observed = prepared.track.motion();
+    let opposite: Vec<CumulativeMotion> =
+        observed.iter().map(|m| CumulativeMotion { by: [-m.by[0], m.by[1]], ..*m }).collect();
+    let explained = |track: &[CumulativeMotion]| {
+        let lag = lag(&commanded, &shifted(track, offset_ms.unwrap_or(0.0)), MAX_LAG_MS);
+        lag.is_some_and(|(_, unexplained)| unexplained <= MAX_UNEXPLAINED)
+    };
+    let aligned = |track: &[CumulativeMotion]| align(&commanded, track).is_some_and(|found| found.doubt().is_none());
+    if explained(&observed) {
+        return false;
+    }
+    explained(&opposite) || !is_one_clock && offset_ms.is_none() && !aligned(&observed) && aligned(&opposite)
+}
+
+/// Returns motion on a clock that lags by `ms`.
+pub fn shifted(motion: &[CumulativeMotion], ms: f64) -> Vec<CumulativeMotion> {
+    motion.iter().map(|m| CumulativeMotion { t_ms: m.t_ms - ms, ..*m }).collect()
+}
+
 fn span(motion: &[CumulativeMotion]) -> String {
     let ends = motion.first().zip(motion.last());
     ends.map_or("none".into(), |(a, b)| format!("{:.1} to {:.1} s", a.t_ms / 1e3, b.t_ms / 1e3))
 }
 
 /// Integrates the commanded motion step by step.
-fn commanded(commands: &Commands, robot: &Robot) -> Vec<CumulativeMotion> {
+pub fn commanded(commands: &Commands, robot: &Robot) -> Vec<CumulativeMotion> {
     let (first_ms, last_ms) = (commands.samples[0].0, commands.samples[commands.samples.len() - 1].0);
     let steps = ((last_ms - first_ms) / robot.step_ms) as usize;
     let mut by = [0.0; 2];

@@ -1,26 +1,36 @@
 //! Resamples streams on one clock to rows of logs.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use crate::clocks::Clocks;
 use crate::frame::Frame;
+use crate::own_motion::OwnMotion;
 use crate::recording::{Commands, Readings, Recording};
 use crate::track::Track;
 use mindgap_foundations::error::{Error, Result};
 use mindgap_foundations::geometry::{Pose, wrap_rad};
 use mindgap_foundations::statistics::summary::median;
-use mindgap_logs::{Robot, Row, Run};
+use mindgap_logs::range_sensor::Sensors;
+use mindgap_logs::{CommandChange, CommandChanges, Robot, Row, Rows, Run};
 
 /// A gap in the poses longer than this ends a run, ms.
 const PAUSE_MS: f64 = 5000.0;
 /// Rows continue for this long after the last command, ms.
 const AFTER_MS: f64 = 1000.0;
+/// Commands of this long before a run are kept, ms: they still move a robot whose dead time and lags take a second or two.
+const BEFORE_MS: f64 = 5000.0;
+/// Commands this close to a row are set at it, ms: no robot moves measurably in that time.
+const ON_ROW_MS: f64 = 1.0;
 /// Minimum number of steps of a run.
 const MIN_STEPS: f64 = 4.0;
 /// Poses of slow trackers are interpolated between frames up to this multiple of their usual interval apart.
 const USUAL_GAP: f64 = 2.5;
 /// Maximum interval of interpolated poses, ms.
 const DENSE_MS: f64 = 50.0;
+/// A robot that moves no farther than this stays in its place: more than the noise of any tracker, cm and rad.
+const STILL_CM: f64 = 2.0;
+const STILL_RAD: f64 = 0.09;
 /// Maximum duration of a recording, ms: a hundred hours.
 const MAX_DURATION_MS: f64 = 3.6e8;
 
@@ -36,7 +46,10 @@ pub struct Prepared {
     pub track: Track,
     /// Number of poses excluded as jumps.
     pub jumps: usize,
-    readings: Option<Readings>,
+    readings: Vec<Readings>,
+    own_motion: OwnMotion,
+    /// The range sensors of the rows.
+    pub sensors: Arc<Sensors>,
 }
 
 impl Prepared {
@@ -53,7 +66,38 @@ impl Prepared {
         check_span(&file, commands.samples.iter().map(|(ms, _)| *ms))?;
         check_span(&file, recording.poses.iter().flatten().map(|frame| frame.t_ms))?;
         let (track, jumps) = track(&file, &recording.poses, robot)?;
-        Ok(Prepared { file, commands, saturated, track, jumps, readings: recording.readings.clone() })
+        let (readings, own_motion) = (recording.readings.clone(), recording.own_motion.clone());
+        let sensors = Arc::default();
+        Ok(Prepared { file, commands, saturated, track, jumps, readings, own_motion, sensors })
+    }
+
+    /// Checks that the robot moves.
+    ///
+    /// # Errors
+    /// When it stays in its place.
+    pub fn check_motion(&self) -> Result<()> {
+        let frames = self.track.frames();
+        let Some(first) = frames.first() else { return Ok(()) };
+        let moved = frames.iter().map(|frame| first.pose.relative(&frame.pose));
+        let (cm, rad) = moved.fold((0.0_f64, 0.0_f64), |(cm, rad), change| {
+            (cm.max(change.position_cm.length()), rad.max(change.heading_rad.abs()))
+        });
+        if cm > STILL_CM || rad > STILL_RAD {
+            return Ok(());
+        }
+        let fastest =
+            self.commands.samples.iter().flat_map(|(_, pair)| pair).fold(0.0_f64, |most, c| most.max(c.abs()));
+        let commands = match fastest {
+            0.0 => "and all commands are zero".to_owned(),
+            fastest => format!(
+                "although commands reach {fastest:.0} % of full speed: are the motors on, and is this the robot's own pose?"
+            ),
+        };
+        let what = format!(
+            "the robot never moves: its poses stay within {cm:.1} cm and {:.1} deg, {commands}",
+            rad.to_degrees()
+        );
+        Err(Error::in_file(&self.file, what))
     }
 
     /// Returns its runs, numbered from `first`: one per period with poses and commands.
@@ -68,26 +112,58 @@ impl Prepared {
             if steps < MIN_STEPS {
                 continue;
             }
-            let row = |step: usize| {
+            let mut rows = Rows::of(Arc::clone(&self.sensors));
+            let heard = 1..=self.sensors.further().len();
+            for step in 0..=steps as usize {
                 let since_ms = step as f64 * robot.step_ms;
                 // Rounding errors must not lead out of the period.
                 let camera_ms = clocks.camera_ms(from_ms + since_ms).clamp(period[0], period[1]);
-                self.row(robot, from_ms, since_ms, camera_ms)
-            };
-            let rows = (0..=steps as usize).map(row);
-            runs.push(Run { name: format!("run-{:03}", first + runs.len()), rows: rows.collect() });
+                rows.push(self.row(robot, from_ms, since_ms, camera_ms));
+                for readings in self.readings.iter().filter(|readings| heard.contains(&readings.sensor)) {
+                    let reading_cm = readings.at([from_ms + since_ms, camera_ms], robot.step_ms);
+                    rows.set_further_cm(readings.sensor - 1, step, reading_cm);
+                }
+            }
+            if let Some(changes) = self.changes_off_rows(from_ms, from_ms + steps * robot.step_ms, robot.step_ms) {
+                rows.set_changes(changes);
+            }
+            runs.push(Run { name: format!("run-{:03}", first + runs.len()), rows });
         }
         runs
+    }
+
+    /// Returns the commands of a run at their own times; `None` if all of them fall on its rows.
+    fn changes_off_rows(&self, from_ms: f64, to_ms: f64, step_ms: f64) -> Option<CommandChanges> {
+        let samples = &self.commands.samples;
+        let index = |t_ms: f64| samples.partition_point(|(ms, _)| *ms <= t_ms);
+        let first = index(from_ms - BEFORE_MS).max(1) - 1;
+        let change = |(t_ms, command): &(f64, [f64; 2])| CommandChange { t_ms: t_ms - from_ms, command: *command };
+        let changes = CommandChanges::of(samples[first..index(to_ms + step_ms)].iter().map(change))?;
+        let off_row_ms = |t_ms: f64| (t_ms - step_ms * (t_ms / step_ms).round()).abs();
+        let is_off = |change: &CommandChange| {
+            if change.t_ms < -ON_ROW_MS { change.command != [0.0; 2] } else { off_row_ms(change.t_ms) > ON_ROW_MS }
+        };
+        changes.as_slice().iter().any(is_off).then_some(changes)
     }
 
     /// Returns the row at `since_ms` after the start of the run, at time `camera_ms` of the poses' clock.
     fn row(&self, robot: &Robot, begin_ms: f64, since_ms: f64, camera_ms: f64) -> Row {
         let t_ms = begin_ms + since_ms;
         let [left, right] = self.commands.mean(t_ms, t_ms + robot.step_ms);
-        let reading =
-            |readings: &Readings| readings.at(if readings.on_clock_of_poses { camera_ms } else { t_ms }, robot.step_ms);
-        let echo_cm = self.readings.as_ref().and_then(reading);
-        Row { t_ms: since_ms, left, right, pose: self.track.at(camera_ms).pose(), echo_cm, ..Row::default() }
+        let first = self.readings.iter().find(|readings| readings.sensor == 0);
+        let times_ms = [t_ms, camera_ms];
+        let angle_deg = |side| self.own_motion.angle_rad(side, times_ms).map(f64::to_degrees);
+        Row {
+            t_ms: since_ms,
+            left,
+            right,
+            pose: self.track.at(camera_ms).pose(),
+            echo_cm: first.and_then(|readings| readings.at(times_ms, robot.step_ms)),
+            rot_left_deg: angle_deg(0),
+            rot_right_deg: angle_deg(1),
+            battery_mv: None,
+            gyro_deg_s: self.own_motion.yaw_rad_s(times_ms).map(f64::to_degrees),
+        }
     }
 }
 

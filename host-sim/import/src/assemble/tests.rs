@@ -2,11 +2,16 @@
 
 use std::path::{Path, PathBuf};
 
+use glam::DVec2;
+
 use super::*;
 use crate::frame::Frame;
+use crate::own_motion::OwnMotion;
 use crate::recording::{Commands, Readings};
-use crate::report::Source;
-use mindgap_foundations::geometry::Pose;
+use crate::report::{Determined, Source};
+use mindgap_foundations::geometry::{Pose, Rectangle, cast};
+use mindgap_logs::Ultrasonic;
+use mindgap_logs::range_sensor::Sensors;
 
 /// Commands change every 600 ms.
 const HELD_MS: f64 = 600.0;
@@ -42,7 +47,8 @@ fn recording(poses: impl Fn(Frame) -> Frame) -> Recording {
         commands: Commands { kind: Kind::Twist, samples: samples.map(|ms| (ms, twist(ms))).collect() },
         poses: path().into_iter().step_by(3).map(|frame| Some(poses(frame))).collect(),
         track: PathBuf::from("track.csv"),
-        readings: None,
+        readings: Vec::new(),
+        own_motion: OwnMotion::default(),
         has_one_clock: false,
         sources: Vec::new(),
     }
@@ -54,7 +60,7 @@ fn robot() -> Robot {
 }
 
 fn assembled(recording: Recording) -> Result<Assembled> {
-    assemble(vec![recording], Some(robot()), Scene::default(), None, |_, _| ())
+    assemble(vec![recording], Some((robot(), Sensors::default())), Scene::default(), Stated::default(), |_, _| ())
 }
 
 /// Largest distance between the logs' poses and the exact ones, cm.
@@ -78,6 +84,22 @@ fn rows_have_commands_and_poses_of_their_times() {
     let expected = [v - 10.0 * w, v + 10.0 * w].map(|cm_s| 2.0 * cm_s);
     let row = logs.runs[0].rows.at(1);
     assert!((row.left - expected[0]).abs() < 1e-9 && (row.right - expected[1]).abs() < 1e-9, "{row:?} {expected:?}");
+}
+
+#[test]
+fn commands_keep_their_own_times_where_they_do_not_fall_on_rows() {
+    let changes_ms = |step_ms: f64| {
+        let robot = Robot { step_ms, ..robot() };
+        let recordings = vec![recording(|frame| frame)];
+        let assembled =
+            assemble(recordings, Some((robot, Sensors::default())), Scene::default(), Stated::default(), |_, _| ())
+                .expect("logs");
+        let changes = assembled.logs.runs[0].rows.changes().cloned();
+        changes.map(|changes| changes.as_slice().iter().map(|change| change.t_ms).collect::<Vec<_>>())
+    };
+    let off_rows = changes_ms(400.0).expect("commands between rows");
+    assert!(off_rows[..4].iter().zip([0.0, 600.0, 1200.0, 1800.0]).all(|(found, set)| (found - set).abs() < 1.0));
+    assert_eq!(changes_ms(HELD_MS), None);
 }
 
 #[test]
@@ -106,6 +128,117 @@ fn wrong_frames_are_corrected() {
         assert!(report.frame.as_ref().is_some_and(|description| description.contains(what)), "{:?}", report.frame);
         assert!(max_error_cm(&logs) < 0.5, "{what}: {}", max_error_cm(&logs));
     }
+}
+
+#[test]
+fn mirrored_drive_is_mirrored_back_and_exchanged_wheels_are_shown_by_walls() {
+    let mirrored = |frame: Frame| {
+        let at = frame.pose.position_cm;
+        Frame { pose: Pose::new(at.x, -at.y, -frame.pose.heading_rad), ..frame }
+    };
+    let Assembled { logs, report, .. } = assembled(recording(mirrored)).expect("logs");
+    assert!(report.frame.as_ref().is_some_and(|what| what.contains("the frame is mirrored")), "{:?}", report.frame);
+    assert!(max_error_cm(&logs) < 0.5, "{}", max_error_cm(&logs));
+    let late = |frame: Frame| Frame { t_ms: frame.t_ms + 7e6, ..mirrored(frame) };
+    let Assembled { logs, report, .. } = assembled(recording(late)).expect("logs");
+    assert!(!report.recordings[0].clocks.shared && max_error_cm(&logs) < 1.5, "{}", max_error_cm(&logs));
+
+    // A room that differs from its mirror image.
+    let mut exchanged = recording(|frame| frame);
+    exchanged.commands.kind = Kind::Motors;
+    exchanged.commands.samples.iter_mut().for_each(|(_, pair)| {
+        let [v, w] = *pair;
+        *pair = [v + 10.0 * w, v - 10.0 * w].map(|cm_s| 2.0 * cm_s);
+    });
+    let beam = Rectangle { low_cm: DVec2::new(0.0, 1900.0), high_cm: DVec2::new(2000.0, 1950.0) };
+    let scene = Scene { arena_cm: Some(DVec2::new(2000.0, 2000.0)), obstacles: vec![beam], ..Scene::default() };
+    let with_sensor = Robot {
+        ultrasonic: Some(Ultrasonic { x_cm: 0.0, y_cm: 0.0, yaw_deg: 0.0, min_cm: 1.0, max_cm: 2500.0 }),
+        ..robot()
+    };
+    let centred = |pose: &Pose| Pose { position_cm: pose.position_cm + DVec2::new(1000.0, 1000.0), ..*pose };
+    exchanged.poses.iter_mut().flatten().for_each(|frame| frame.pose = centred(&frame.pose));
+    let reading = |frame: &Frame| {
+        let hit = cast(&scene.sides(), frame.pose.position_cm, frame.pose.direction());
+        (frame.t_ms, hit.map(|hit| hit.distance_cm))
+    };
+    let samples = exchanged.poses.iter().flatten().map(reading).collect();
+    exchanged.readings = vec![Readings { sensor: 0, samples, on_clock_of_poses: false }];
+    let stated = Stated::default();
+    let Assembled { report, .. } =
+        assemble(vec![exchanged], Some((with_sensor, Sensors::default())), scene, stated, |_, _| ()).expect("logs");
+    assert!(
+        report.frame.as_ref().is_some_and(|what| what.contains("left and right were exchanged")),
+        "{:?}",
+        report.frame
+    );
+}
+
+/// A recording whose commands stop for two seconds now and then, and the number of pauses.
+fn paused(stops_after_ms: f64) -> (Recording, usize) {
+    let is_paused = |ms: f64| ms % 6000.0 > 4000.0;
+    let mut recording = recording(|frame| frame);
+    recording.commands.samples.retain(|(ms, _)| !is_paused(*ms));
+    let mut pose = Pose::new(50.0, 80.0, 0.3);
+    recording.poses.clear();
+    for i in 0..(LASTS_MS / 10.0) as usize {
+        let t_ms = 10.0 * i as f64;
+        recording.poses.extend((i % 3 == 0).then_some(Some(Frame { t_ms, pose })));
+        let last_ms =
+            if is_paused(t_ms) { (t_ms / 6000.0).floor() * 6000.0 + 4000.0 } else { (t_ms / 50.0).floor() * 50.0 };
+        if t_ms - last_ms <= stops_after_ms {
+            let [v, w] = twist(last_ms);
+            pose = pose.compose(&Pose::new(0.01 * v, 0.0, 0.01 * w));
+        }
+    }
+    (recording, (LASTS_MS / 6000.0) as usize - 1)
+}
+
+#[test]
+fn pauses_show_whether_the_base_stops_by_itself() {
+    for (stops_after_ms, expected) in [(500.0, Some(500.0)), (1200.0, Some(1200.0)), (f64::INFINITY, None)] {
+        let (recording, number) = paused(stops_after_ms);
+        let Assembled { logs, report, .. } = assembled(recording).expect("logs");
+        let RecordingReport { clocks, pauses, .. } = &report.recordings[0];
+        let pauses = pauses.as_ref().expect("pauses");
+        assert_eq!((pauses.number, pauses.determined), (number, Determined::Inferred), "{pauses:?}");
+        let off_ms = pauses.stops_after_ms.zip(expected).map_or(0.0, |(found, expected)| (found - expected).abs());
+        assert!(off_ms <= 60.0 && pauses.stops_after_ms.is_some() == expected.is_some(), "{pauses:?}");
+        assert!(clocks.unexplained.is_some_and(|share| share < 0.05), "{clocks:?}");
+        // In the middle of a pause, the command is zero only if the base has stopped.
+        let row = logs.runs[0].rows.at(14);
+        assert_eq!(row.command() == [0.0; 2], stops_after_ms < 1600.0, "{row:?}");
+    }
+    let (recording, _) = paused(500.0);
+    let stated = Stated { watchdog: Some(Watchdog::None), ..Stated::default() };
+    let held = assemble(vec![recording], Some((robot(), Sensors::default())), Scene::default(), stated, |_, _| ())
+        .expect("logs");
+    let pauses = held.report.recordings[0].pauses.as_ref().expect("pauses");
+    assert_eq!((pauses.stops_after_ms, pauses.determined), (None, Determined::Stated));
+}
+
+#[test]
+fn robot_that_never_moves_is_reported_and_leaves_the_batch() {
+    let still = || recording(|frame| Frame { pose: Pose::new(50.0, 80.0, 0.3), ..frame });
+    let error = assembled(still()).err().expect("refused").to_string();
+    assert!(error.contains("the robot never moves") && error.contains("are the motors on"), "{error}");
+    let both = vec![still(), recording(|frame| frame)];
+    let Assembled { logs, report, .. } =
+        assemble(both, Some((robot(), Sensors::default())), Scene::default(), Stated::default(), |_, _| ())
+            .expect("logs");
+    assert_eq!(logs.runs.len(), 1);
+    assert!(report.left_out[0].reason.contains("the robot never moves"), "{:?}", report.left_out);
+}
+
+#[test]
+fn gains_of_travel_and_rotation_are_reported() {
+    let half = |frame: Frame| Frame { t_ms: frame.t_ms * 2.0, ..frame };
+    let mut slow = recording(half);
+    slow.commands.samples.iter_mut().for_each(|(ms, _)| *ms *= 2.0);
+    let Assembled { report, .. } = assembled(slow).expect("logs");
+    let clocks = &report.recordings[0].clocks;
+    let gains = clocks.travel_gain.zip(clocks.rotation_gain).expect("motion");
+    assert!((gains.0 - 0.5).abs() < 0.02 && (gains.1 - 0.5).abs() < 0.03, "{clocks:?}");
 }
 
 #[test]
@@ -146,13 +279,15 @@ fn missing_robot_is_fitted_and_marked() {
         let [v, w] = *pair;
         *pair = [v - 10.0 * w, v + 10.0 * w].map(|cm_s| 2.0 * cm_s);
     });
-    wheels.readings = Some(Readings { samples: vec![(0.0, Some(50.0))], on_clock_of_poses: false });
-    let Assembled { logs, draft, .. } = assemble(vec![wheels], None, Scene::default(), None, |_, _| ()).expect("logs");
+    wheels.readings = vec![Readings { sensor: 0, samples: vec![(0.0, Some(50.0))], on_clock_of_poses: false }];
+    let Assembled { logs, draft, .. } =
+        assemble(vec![wheels], None, Scene::default(), Stated::default(), |_, _| ()).expect("logs");
     let text = draft.expect("a draft").text();
     assert!((logs.robot.full_speed_cm_s - 50.0).abs() < 1.0 && (logs.robot.track_cm - 20.0).abs() < 0.5, "{text}");
     assert!(text.contains("# FILL IN: fitted to these logs") && text.contains("\n[ultrasonic]"), "{text}");
     assert_eq!((logs.runs[0].rows.at(0).echo_cm, logs.runs[0].rows.at(1).echo_cm), (Some(50.0), None));
-    let twist = assemble(vec![recording(|frame| frame)], None, Scene::default(), None, |_, _| ()).expect("logs");
+    let twist =
+        assemble(vec![recording(|frame| frame)], None, Scene::default(), Stated::default(), |_, _| ()).expect("logs");
     assert!([20.0, 25.0, 30.0].contains(&twist.logs.robot.full_speed_cm_s), "{}", twist.logs.robot.full_speed_cm_s);
     assert!(twist.draft.expect("a draft").text().contains("\n# [ultrasonic]"));
 }
@@ -160,11 +295,11 @@ fn missing_robot_is_fitted_and_marked() {
 #[test]
 fn readings_are_dropped_without_range_sensor() {
     let mut read = recording(|frame| frame);
-    read.readings = Some(Readings { samples: vec![(0.0, Some(50.0))], on_clock_of_poses: false });
+    read.readings = vec![Readings { sensor: 0, samples: vec![(0.0, Some(50.0))], on_clock_of_poses: false }];
     read.sources = vec![Source::named("readings".into(), &[0.0, 1.0])];
     let Assembled { logs, report, .. } = assembled(read).expect("logs");
     assert!(logs.runs[0].rows.iter().all(|row| row.echo_cm.is_none()));
-    assert!(report.recordings[0].sources[0].left_out[0].contains("no [ultrasonic]"), "{report:?}");
+    assert!(report.left_out[0].reason.contains("no [ultrasonic]"), "{report:?}");
 }
 
 #[test]

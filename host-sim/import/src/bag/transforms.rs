@@ -6,9 +6,9 @@
 use std::collections::{BTreeMap, HashMap};
 
 use super::messages::Decoded;
-use super::topics::{is_body, is_fixed};
+use super::roles::{is_body, is_fixed};
 use super::{Sample, Stream};
-use mindgap_foundations::geometry::{Pose, wrap_rad};
+use crate::spatial_pose::SpatialPose;
 
 /// Maximum depth of a robot's frames, which also ends cycles.
 const MAX_DEPTH: usize = 16;
@@ -19,7 +19,7 @@ struct Link {
     name: String,
     parent: String,
     /// Poses with their times, ms, in order; a static frame has one.
-    poses: Vec<(f64, Pose)>,
+    poses: Vec<(f64, SpatialPose)>,
 }
 
 /// Returns composed streams of robots in fixed frames, named like single transforms. Chains are omitted if there is such a
@@ -60,12 +60,12 @@ fn frames(name: &str) -> Option<(&str, &str, &str)> {
     Some((topic, parent, child))
 }
 
-fn poses(stream: &Stream, is_static: bool) -> Vec<(f64, Pose)> {
+fn poses(stream: &Stream, is_static: bool) -> Vec<(f64, SpatialPose)> {
     let pose = |sample: &Sample| match sample.value {
         Decoded::Pose(pose) => Some((sample.stamp_or_log_ms(), pose?)),
         _ => None,
     };
-    let mut poses: Vec<(f64, Pose)> = stream.samples.iter().filter_map(pose).collect();
+    let mut poses: Vec<(f64, SpatialPose)> = stream.samples.iter().filter_map(pose).collect();
     poses.sort_by(|a, b| a.0.total_cmp(&b.0));
     if is_static {
         poses.drain(..poses.len().saturating_sub(1));
@@ -109,12 +109,13 @@ fn composed(links: &[&Link], streams: &HashMap<String, Stream>) -> Option<Stream
         schema: stream.schema.clone(),
         samples: stream.samples.iter().map(sample).collect(),
         composed_of: links.iter().rev().map(|link| link.name.clone()).collect(),
+        ..Stream::default()
     })
 }
 
 impl Link {
     /// Returns the pose of the frame at a time; `None` before its first pose. The last pose holds thereafter.
-    fn at(&self, ms: f64) -> Option<Pose> {
+    fn at(&self, ms: f64) -> Option<SpatialPose> {
         if let [(_, always)] = self.poses.as_slice() {
             return Some(*always);
         }
@@ -122,10 +123,7 @@ impl Link {
         let (from_ms, from) = self.poses.get(after.checked_sub(1)?)?;
         let Some((to_ms, to)) = self.poses.get(after) else { return Some(*from) };
         let share = (ms - from_ms) / (to_ms - from_ms);
-        Some(Pose {
-            position_cm: from.position_cm.lerp(to.position_cm, share),
-            heading_rad: wrap_rad(from.heading_rad + share * wrap_rad(to.heading_rad - from.heading_rad)),
-        })
+        Some(from.between(to, share))
     }
 }
 
@@ -133,22 +131,31 @@ impl Link {
 mod tests {
     use std::f64::consts::FRAC_PI_2;
 
+    use glam::{DQuat, DVec3};
+
     use super::*;
+    use crate::upright::Axis;
+
+    /// A pose on the floor, cm and rad.
+    fn pose(x: f64, y: f64, rad: f64) -> SpatialPose {
+        let rotation = DQuat::from_xyzw(0.0, 0.0, libm::sin(rad / 2.0), libm::cos(rad / 2.0));
+        SpatialPose { at_cm: DVec3::new(x, y, 0.0), rotation }
+    }
 
     /// A stream of poses at times.
-    fn stream(name: &str, poses: &[(f64, Pose)]) -> (String, Stream) {
+    fn stream(name: &str, poses: &[(f64, SpatialPose)]) -> (String, Stream) {
         let sample =
-            |(ms, pose): &(f64, Pose)| Sample { log_ms: *ms, stamp_ms: None, value: Decoded::Pose(Some(*pose)) };
+            |(ms, pose): &(f64, SpatialPose)| Sample { log_ms: *ms, stamp_ms: None, value: Decoded::Pose(Some(*pose)) };
         let samples = poses.iter().map(sample).collect();
-        (name.into(), Stream { schema: "tf2_msgs/msg/TFMessage".into(), samples, composed_of: Vec::new() })
+        (name.into(), Stream { schema: "tf2_msgs/msg/TFMessage".into(), samples, ..Stream::default() })
     }
 
     fn localised() -> HashMap<String, Stream> {
         HashMap::from([
             // The localiser moves the odometry frame by 10 cm in 100 ms.
-            stream("/tf:map>odom", &[(0.0, Pose::new(0.0, 0.0, FRAC_PI_2)), (100.0, Pose::new(10.0, 0.0, FRAC_PI_2))]),
-            stream("/tf:odom>base_footprint", &[(-5.0, Pose::new(0.0, 0.0, 0.0)), (50.0, Pose::new(20.0, 0.0, 0.0))]),
-            stream("/tf_static:base_footprint>base_link", &[(-9.0, Pose::new(1.0, 0.0, 0.0))]),
+            stream("/tf:map>odom", &[(0.0, pose(0.0, 0.0, FRAC_PI_2)), (100.0, pose(10.0, 0.0, FRAC_PI_2))]),
+            stream("/tf:odom>base_footprint", &[(-5.0, pose(0.0, 0.0, 0.0)), (50.0, pose(20.0, 0.0, 0.0))]),
+            stream("/tf_static:base_footprint>base_link", &[(-9.0, pose(1.0, 0.0, 0.0))]),
         ])
     }
 
@@ -158,7 +165,8 @@ mod tests {
         let [(name, chain)] = chains.as_slice() else { panic!("{} chains", chains.len()) };
         assert_eq!(name, "/tf:map>base_footprint");
         assert_eq!(chain.composed_of, ["/tf:map>odom", "/tf:odom>base_footprint"]);
-        let Decoded::Pose(Some(pose)) = chain.samples[1].value else { panic!("no pose") };
+        let Decoded::Pose(Some(composed)) = chain.samples[1].value else { panic!("no pose") };
+        let pose = Axis::Z.on_floor(&composed);
         assert!((pose.position_cm - glam::DVec2::new(5.0, 20.0)).length() < 1e-9, "{pose:?}");
         assert!((pose.heading_rad - FRAC_PI_2).abs() < 1e-12);
         assert_eq!(chain.samples[0].value, Decoded::Pose(None), "before the localiser started");
@@ -170,8 +178,8 @@ mod tests {
         let parts = chains.iter().find(|(name, _)| name == "/tf:odom>base_link").map(|(_, chain)| &chain.composed_of);
         assert_eq!(parts.map(Vec::len), Some(2));
         let markers = HashMap::from([
-            stream("/tf:room>marker", &[(0.0, Pose::new(0.0, 0.0, 0.0)), (50.0, Pose::new(20.0, 0.0, 0.0))]),
-            stream("/tf_static:marker>axle", &[(0.0, Pose::new(-3.0, 0.0, 0.0))]),
+            stream("/tf:room>marker", &[(0.0, pose(0.0, 0.0, 0.0)), (50.0, pose(20.0, 0.0, 0.0))]),
+            stream("/tf_static:marker>axle", &[(0.0, pose(-3.0, 0.0, 0.0))]),
         ]);
         assert!(super::chains(&markers, None).is_empty());
         let chains = super::chains(&markers, Some("/tf:room>axle"));
@@ -180,8 +188,8 @@ mod tests {
 
     #[test]
     fn cycles_and_pure_odometry_are_not_chains() {
-        let still = Pose::new(0.0, 0.0, 0.0);
-        let two = [(0.0, still), (50.0, Pose::new(20.0, 0.0, 0.0))];
+        let still = pose(0.0, 0.0, 0.0);
+        let two = [(0.0, still), (50.0, pose(20.0, 0.0, 0.0))];
         let circle = HashMap::from([stream("/tf:a>base_link", &two), stream("/tf:b>a", &two), stream("/tf:a>b", &two)]);
         assert!(chains(&circle, None).is_empty());
         let odometry =

@@ -48,7 +48,7 @@ struct Scatter {
     forward_cm: f64,
     lateral_cm: f64,
     echo_cm: f64,
-    /// Least and largest reading, cm.
+    /// Smallest and largest reading, cm.
     range_cm: [f64; 2],
 }
 

@@ -1,5 +1,7 @@
 //! Accuracy of a simulator's networks on logs: the paper's figure 2 in numbers, and proper scores of the echo probability.
 
+use std::collections::BTreeMap;
+
 use mindgap_core::network::Network;
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -11,7 +13,9 @@ use mindgap_foundations::error::{Error, Result};
 use mindgap_foundations::schema_number::SchemaNumber;
 use mindgap_foundations::statistics::agreement::{self as statistics, ReliabilityBin, TrendLine};
 use mindgap_logs::Logs;
-use mindgap_models::simulator::{Learned, Simulator};
+use mindgap_logs::heard::Heard;
+use mindgap_models::simulator::further_sensor::Matched;
+use mindgap_models::simulator::{Learned, Missing, Simulator};
 
 /// The output of `mindgap evaluate --json`.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
@@ -46,6 +50,19 @@ pub struct Networks {
     /// The reading, cm.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub echo_value: Option<Value>,
+    /// The last two of named range sensors, as `echo_probability_NAME` and `echo_value_NAME`.
+    #[serde(flatten)]
+    pub named: BTreeMap<String, OfSensor>,
+}
+
+/// Accuracy of a network of a named range sensor.
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[serde(untagged)]
+pub enum OfSensor {
+    /// Whether there is an echo.
+    Probability(Probability),
+    /// The reading, cm.
+    Value(Value),
 }
 
 /// Accuracy of a network that predicts a value.
@@ -103,6 +120,71 @@ pub fn evaluate(simulator: &Simulator, logs: &Logs, watch: impl Fn(usize, usize)
     Ok(Evaluation { schema: SchemaNumber, networks, table_one, sensor_models: sensor_models(simulator, logs, watch) })
 }
 
+/// Evaluates a simulator as [`evaluate`] does, on logs as each of the robot's range sensors heard them, the first sensor first.
+/// `warn` receives a line for each sensor that cannot be evaluated.
+///
+/// # Errors
+/// As [`evaluate`], or when the first sensors of simulator and logs differ.
+pub fn evaluate_sensors(
+    simulator: &Simulator,
+    heard: &[Heard],
+    watch: impl Fn(usize, usize) + Sync,
+    mut warn: impl FnMut(String),
+) -> Result<Evaluation> {
+    let further = simulator.matched(heard)?;
+    let mut evaluation = evaluate(simulator, &heard[0].logs, watch)?;
+    if let Some(first) = &simulator.sensor {
+        let own = evaluation.networks.clone();
+        evaluation.networks.name(first, own);
+    }
+    for Matched { sensor, compared } in further {
+        match compared {
+            Ok(compared) => {
+                let (own, logs) = *compared;
+                evaluation.networks.name(&sensor, networks(&own, logs)?);
+                if let (Some(tables), Some(own)) = (&mut evaluation.table_one, &own.table_one) {
+                    tables.name(&sensor, networks(&own.asking(&sensor)?, logs)?);
+                }
+            }
+            Err(why) => warn(format!("range sensor {sensor} is not evaluated: {why}")),
+        }
+    }
+    Ok(evaluation)
+}
+
+impl Networks {
+    /// Returns the readings of the first range sensor, unless they are also there under its name.
+    pub fn unnamed_value(&self) -> Option<&Value> {
+        let is_named =
+            |value: &Value| self.named.values().any(|of| matches!(of, OfSensor::Value(named) if named == value));
+        self.echo_value.as_ref().filter(|value| !is_named(value))
+    }
+
+    /// Returns the same of whether there is an echo.
+    pub fn unnamed_probability(&self) -> Option<&Probability> {
+        let is_named = |own: &Probability| {
+            self.named.values().any(|of| matches!(of, OfSensor::Probability(named) if named == own))
+        };
+        self.echo_probability.as_ref().filter(|own| !is_named(own))
+    }
+
+    /// Returns the readings of named range sensors, with the networks' names.
+    pub fn named_values(&self) -> impl Iterator<Item = (&str, &Value)> {
+        self.named.iter().filter_map(|(name, of)| match of {
+            OfSensor::Value(value) => Some((name.as_str(), value)),
+            OfSensor::Probability(_) => None,
+        })
+    }
+
+    /// Takes the networks of a range sensor under its name.
+    fn name(&mut self, sensor: &str, of: Networks) {
+        let key = |network: &str| Missing::network_of(network, sensor);
+        let probability = of.echo_probability.map(|p| (key("echo_probability"), OfSensor::Probability(p)));
+        let value = of.echo_value.map(|v| (key("echo_value"), OfSensor::Value(v)));
+        self.named.extend(probability.into_iter().chain(value));
+    }
+}
+
 fn networks(simulator: &Simulator, logs: &Logs) -> Result<Networks> {
     let samples =
         if simulator.chain().is_empty() { network_predictions(simulator, logs) } else { predict(simulator, logs)? };
@@ -119,6 +201,7 @@ fn networks(simulator: &Simulator, logs: &Logs) -> Result<Networks> {
         lateral: value(samples.lateral),
         echo_probability: (!echoes.is_empty()).then(|| Probability::of(echoes)),
         echo_value,
+        named: BTreeMap::new(),
     })
 }
 

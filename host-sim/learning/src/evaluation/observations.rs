@@ -5,13 +5,15 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::Arc;
 
+use super::dead_reckoning;
 use mindgap_foundations::geometry::{Pose, first_hit};
 use mindgap_foundations::motion::Motion;
 use mindgap_logs::samples::{self, MotionSample};
-use mindgap_logs::{Logs, Run};
+use mindgap_logs::{Logs, Row, Run};
 use mindgap_models::effects::StepContext;
 use mindgap_models::effects::context::{RunHistory, Surroundings};
 use mindgap_models::effects::drive_filter::{DriveFilter, FilteredDrive, StepSpeeds};
+use mindgap_models::effects::pieces::Pieces;
 use mindgap_models::simulator::baseline::MotionModel;
 use mindgap_models::sonar::familiar::{FamiliarPoses, PoseMemory};
 use mindgap_models::sonar::place::{Place, place_of};
@@ -29,11 +31,11 @@ pub struct Observations {
     pub blocks: usize,
     /// Number of places at which the sensor was.
     pub places: usize,
-    /// All rows with a pose, block by block.
+    /// All rows with a pose, block by block; all rows of a robot that was never tracked but measured its own motion.
     pub rows: Vec<Observation>,
 }
 
-/// A row at which the robot was tracked.
+/// A row at which the robot was tracked, or whose pose is dead-reckoned.
 #[derive(Clone)]
 pub struct Observation {
     /// Index of the run within the logs.
@@ -58,6 +60,10 @@ pub struct Observation {
     pub following_steps: Vec<StepContext>,
     /// The motion of the step, or of the steps that are compared as one, if its end was tracked.
     pub motion: Option<Motion<f64>>,
+    /// How far the rims of the left and the right wheel turned in the step by their rotation counters, cm.
+    pub wheels_cm: Option<[f64; 2]>,
+    /// The turn of a step at the yaw rate that a gyro shows at this row, rad.
+    pub gyro_rad: Option<f64>,
     /// What the simulator's filter makes of the commands of the step and of the one before.
     pub speeds: StepSpeeds,
     /// The motion that the simulator expects of the logged commands, if it has a model of motion.
@@ -86,17 +92,23 @@ impl Observations {
     pub fn of(logs: &Logs, motion: Option<&MotionModel>, law: Option<&SensorLaw>) -> Self {
         let surroundings = Surroundings::new(&logs.robot, &logs.scene);
         let steps = samples::motion(logs);
+        // Counters and gyro serve where nobody tracked the robot. Beside poses, which are a sixth as exact, they made causes of
+        // what the forms of the true effects miss by a hundredth.
+        let is_tracked = !is_untracked(logs);
         // Where no step has a pose at both ends, whole segments between poses are compared.
-        let whole_segments = steps.is_empty();
+        let whole_segments = steps.is_empty() && is_tracked;
+        let law = law.filter(|_| is_tracked);
         let mut steps = steps.iter().peekable();
         let drive = FilteredDrive::from(motion.map_or_else(DriveFilter::default, MotionModel::filter));
         let mut rows = Vec::new();
         let parts = parts_per_run(logs);
         let is_unpolled = unpolled_rows(logs);
         for (run, logged) in logs.runs.iter().enumerate() {
-            let contexts = contexts(logged, &surroundings);
+            let contexts =
+                if is_tracked { contexts(logged, &surroundings) } else { reckoned_contexts(logged, &surroundings) };
             for (k, (row, context)) in logged.rows.iter().zip(&contexts).enumerate() {
-                let (Some(pose), Some(context)) = (row.pose, context) else { continue };
+                let Some(context) = context else { continue };
+                let pose = context.pose;
                 let step = steps.next_if(|s| (s.run, s.row) == (run, k));
                 let increment = step.map(MotionSample::motion);
                 let next_tracked = (k + 1..logged.rows.len()).find(|i| logged.rows.at(*i).pose.is_some());
@@ -104,7 +116,7 @@ impl Observations {
                 let segment = || Some(Motion::between(&pose, &logged.rows.at(segment_end?).pose?));
                 let end_ms = logged.rows.get(k + 1).map_or(row.t_ms, |next| next.t_ms);
                 let block = run * parts + k * parts / logged.rows.len();
-                let speeds = drive.speeds(&context.commands, 0, &logs.robot);
+                let speeds = drive.speeds_of(&context.commands, &context.pieces, &logs.robot);
                 rows.push(Observation {
                     run,
                     at: k,
@@ -117,6 +129,8 @@ impl Observations {
                     context: *context,
                     following_steps: segment_end.map_or_else(Vec::new, |end| untracked(logged, k + 1..end, context)),
                     motion: increment.or_else(segment),
+                    wheels_cm: samples::wheels_cm(&logs.robot, logged, k).filter(|_| !is_tracked),
+                    gyro_rad: gyro_rad(logs, logged, k).filter(|_| !is_tracked),
                     speeds,
                     expected: motion.map(|motion| motion.step(speeds.now, speeds.before)),
                     echo_cm: row.echo_cm,
@@ -190,10 +204,10 @@ impl Observations {
 }
 
 impl Observation {
-    /// Returns the weights of forward, lateral, turn, echo rate and echo value.
-    pub fn weights(&self) -> [f64; 5] {
+    /// Returns the weights of forward, lateral, turn, echo rate and echo value, of both rotation counters and of the gyro.
+    pub fn weights(&self) -> [f64; 8] {
         let ([forward, lateral, turn], [rate, value]) = (self.motion_weight, self.echo_weight);
-        [forward, lateral, turn, rate, value]
+        [forward, lateral, turn, rate, value, forward, forward, turn]
     }
 
     /// Returns the number of steps that are compared as one.
@@ -252,13 +266,42 @@ pub fn number_places(rows: &mut [Observation]) -> usize {
 fn contexts(run: &Run, surroundings: &Surroundings) -> Vec<Option<StepContext>> {
     let mut history = RunHistory::default();
     let begin_ms = run.rows.at(0).t_ms;
-    let context = |row: mindgap_logs::Row| {
-        history.command(row.command());
+    let context = |(k, row): (usize, Row)| {
+        history.command_of(&run.rows, k);
         let context = row.pose.map(|pose| surroundings.context(&history, row.t_ms - begin_ms, pose));
         history.leave(context.as_ref(), row.echo_cm);
         context
     };
-    run.rows.iter().map(context).collect()
+    run.rows.iter().enumerate().map(context).collect()
+}
+
+/// Returns whether the robot was never tracked, but measured its own motion.
+pub fn is_untracked(logs: &Logs) -> bool {
+    let rows = || logs.runs.iter().flat_map(|run| &run.rows);
+    let measures_itself = |row: &Row| row.gyro_deg_s.is_some() || row.rot_left_deg.and(row.rot_right_deg).is_some();
+    rows().all(|row| row.pose.is_none()) && rows().any(|row| measures_itself(&row))
+}
+
+/// Returns the contexts of all rows of a robot that was never tracked, at dead-reckoned poses; what its sensor faced is unknown.
+fn reckoned_contexts(run: &Run, surroundings: &Surroundings) -> Vec<Option<StepContext>> {
+    let mut history = RunHistory::default();
+    let begin_ms = run.rows.at(0).t_ms;
+    let poses = dead_reckoning::poses(&surroundings.robot, run);
+    let context = |(k, (row, pose)): (usize, (Row, Pose))| {
+        history.command_of(&run.rows, k);
+        let context = surroundings.unseen(&history, row.t_ms - begin_ms, pose);
+        history.leave(Some(&context), row.echo_cm);
+        Some(context)
+    };
+    run.rows.iter().zip(poses).enumerate().map(context).collect()
+}
+
+/// Returns the turn of a step at the yaw rate at a row; `None` where the commands that led to it are unknown.
+fn gyro_rad(logs: &Logs, run: &Run, row: usize) -> Option<f64> {
+    let rate = run.rows.at(row).gyro_deg_s?;
+    let step_ms = logs.robot.step_ms;
+    let follows_gap = samples::follows_gap(step_ms, run, row) || row > 0 && samples::follows_gap(step_ms, run, row - 1);
+    (!follows_gap).then_some(rate.to_radians() * step_ms / 1000.0)
 }
 
 /// Returns the contexts of rows at which the robot was not tracked, with its last tracked pose.
@@ -268,7 +311,7 @@ fn untracked(run: &Run, rows: Range<usize>, last_tracked: &StepContext) -> Vec<S
         commands.rotate_right(1);
         commands[0] = run.rows.at(i).command();
         let elapsed_min = (run.rows.at(i).t_ms - run.rows.at(0).t_ms) / 60_000.0;
-        StepContext { elapsed_min, commands, ..*last_tracked }
+        StepContext { elapsed_min, commands, pieces: Pieces::of(&run.rows, i), ..*last_tracked }
     };
     rows.map(context).collect()
 }

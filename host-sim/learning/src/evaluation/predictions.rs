@@ -60,15 +60,24 @@ pub fn predict(simulator: &Simulator, logs: &Logs) -> Result<Predictions> {
 
 /// Returns the predicted motion of one step.
 pub fn step(effects: &EffectChain, drive: &MotionModel, context: &StepContext) -> Motion<f64> {
-    effects.wrap(context, |now, before| drive.step(now, before))
+    if drive.is_learned() {
+        effects.wrap(context, |now, before| drive.step(now, before))
+    } else {
+        effects.wrap_pieces(context, |held| drive.step(held, held))
+    }
 }
 
 /// Returns the predicted motion of a row's step, or of the steps that are compared as one.
 pub fn increment(effects: &EffectChain, drive: &MotionModel, row: &Observation) -> Motion<f64> {
-    let first = effects.wrap(&row.context, |now, before| match row.expected {
-        Some(expected) if [row.speeds.now, row.speeds.before] == [now, before] => expected,
-        _ => drive.step(now, before),
-    });
+    let is_in_pieces = !drive.is_learned() && !row.context.pieces.is_empty();
+    let first = if is_in_pieces {
+        step(effects, drive, &row.context)
+    } else {
+        effects.wrap(&row.context, |now, before| match row.expected {
+            Some(expected) if [row.speeds.now, row.speeds.before] == [now, before] => expected,
+            _ => drive.step(now, before),
+        })
+    };
     if row.following_steps.is_empty() {
         return first;
     }

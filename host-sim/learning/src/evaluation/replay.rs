@@ -49,7 +49,7 @@ impl<'a> Player<'a> {
             if row.pose.is_some() && (at.is_none() || since >= PUT_BACK_STEPS || self.baseline.motion.is_none()) {
                 (at, since) = (row.pose, 0);
             }
-            history.command(row.command());
+            history.command_of(&run.rows, k);
             let step = at.map(|pose| self.surroundings.context(&history, row.t_ms - begin_ms, pose));
             let echo_cm = step.as_ref().and_then(|step| {
                 let sonar = self.baseline.sonar.as_ref()?;

@@ -12,10 +12,11 @@ use mindgap_foundations::error::Result;
 use mindgap_foundations::executor::{self, Executor};
 use mindgap_foundations::geometry::Pose;
 use mindgap_foundations::random::derive;
-use mindgap_logs::Scene;
+use mindgap_logs::{Scene, Termination};
 use mindgap_models::simulator::Simulator;
 use mindgap_models::simulator::ensemble::Member;
 use mindgap_models::simulator::environment::Environment;
+use mindgap_models::simulator::motion::MotionTable;
 use mindgap_models::simulator::rollout::{RolloutOutcome, RolloutRequest};
 
 /// Number of robots over which the epistemic uncertainty is estimated.
@@ -30,8 +31,21 @@ pub struct SuccessProbability {
     pub success: f64,
     /// Interval that contains the success rates of 95 % of the robots, 0..=1.
     pub ci95: [f64; 2],
-    /// Share of the variance of a single run's success that is between robots, 0..=1. It is epistemic; the rest is noise.
+    /// Share of the variance of a single run's success that comes from uncertainty about the robot, 0..=1; the rest is noise.
     pub epistemic_fraction: f64,
+}
+
+/// Shares of simulated runs by how they end; they add up to one.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Endings {
+    /// Reached the target.
+    pub reached: f64,
+    /// Finished elsewhere.
+    pub missed: f64,
+    /// Touched a wall or an obstacle.
+    pub crashed: f64,
+    /// Drove until the step limit, not to the target.
+    pub timed_out: f64,
 }
 
 /// Evaluates controllers on robots drawn from the posterior.
@@ -69,6 +83,33 @@ impl<'a> Judge<'a> {
         Ok((0..controllers.len()).map(|controller| SuccessProbability::from_rates(rates(controller), runs)).collect())
     }
 
+    /// Returns how `runs` runs of every robot end.
+    ///
+    /// # Errors
+    /// If the executor fails.
+    pub fn endings(&self, controller: &Controller, runs: usize) -> Result<Endings> {
+        let of_robot = |number: usize| {
+            let robot = &self.robots[number];
+            let motions = [robot.motions(controller)];
+            let outcomes = robot.run(&self.requests(number, std::slice::from_ref(controller), &motions, runs));
+            let share = |is_such: &dyn Fn(&RolloutOutcome) -> bool| {
+                outcomes.iter().filter(|outcome| is_such(outcome)).count() as f64 / (runs * self.robots.len()) as f64
+            };
+            let failed = |as_this: Termination| {
+                share(&|outcome| !outcome.reached(self.target_cm) && outcome.termination == as_this)
+            };
+            Ok([
+                share(&|outcome| outcome.reached(self.target_cm)),
+                failed(Termination::Finished),
+                failed(Termination::Crashed),
+                failed(Termination::TimedOut),
+            ])
+        };
+        let by_robot = executor::map(self.executor, self.robots.len(), of_robot)?;
+        let sum = |ending: usize| by_robot.iter().map(|shares: &[f64; 4]| shares[ending]).sum();
+        Ok(Endings { reached: sum(0), missed: sum(1), crashed: sum(2), timed_out: sum(3) })
+    }
+
     /// Returns the probability of success if the robot were known: the mean over robots of that of the best controller for
     /// each. One half of the `runs` runs selects the controller and the other half measures it, since the rate by which one
     /// has selected is biased upwards.
@@ -101,17 +142,23 @@ impl<'a> Judge<'a> {
         runs: usize,
     ) -> Vec<Vec<bool>> {
         let motions: Vec<_> = controllers.iter().map(|controller| robot.motions(controller)).collect();
-        let mut requests = Vec::with_capacity(controllers.len() * runs);
-        for (controller, motions) in controllers.iter().zip(&motions) {
-            requests.extend((0..runs).map(|run| RolloutRequest {
-                controller,
-                motions,
-                seed: derive(self.seed, &[number as u64, run as u64]),
-            }));
-        }
-        let outcomes = robot.run(&requests);
+        let outcomes = robot.run(&self.requests(number, controllers, &motions, runs));
         let reached = |of_one: &[RolloutOutcome]| of_one.iter().map(|o| o.reached(self.target_cm)).collect();
         outcomes.chunks(runs).map(reached).collect()
+    }
+
+    /// Returns the runs of controllers on a robot.
+    fn requests<'r>(
+        &self,
+        robot: usize,
+        controllers: &'r [Controller],
+        motions: &'r [MotionTable],
+        runs: usize,
+    ) -> Vec<RolloutRequest<'r>> {
+        let seed = |run: usize| derive(self.seed, &[robot as u64, run as u64]);
+        let of_one =
+            |(controller, motions)| (0..runs).map(move |run| RolloutRequest { controller, motions, seed: seed(run) });
+        controllers.iter().zip(motions).flat_map(of_one).collect()
     }
 }
 

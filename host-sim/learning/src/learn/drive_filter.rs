@@ -10,6 +10,7 @@ use mindgap_logs::samples::{self, MotionSample};
 use mindgap_logs::{Logs, Robot};
 use mindgap_models::effects::context::{CommandHistory, RunHistory};
 use mindgap_models::effects::drive_filter::{DriveFilter, FilteredDrive, MostChange};
+use mindgap_models::effects::pieces::Pieces;
 use mindgap_models::simulator::nominal::motion_bias::{FEATURES, features};
 use nalgebra::{DMatrix, DVector};
 
@@ -47,23 +48,26 @@ pub fn steps(filter: DriveFilter, logs: &Logs) -> impl Iterator<Item = MotionSam
     sent(logs).map(move |(step, commands)| filtered(&drive, step, &commands, &logs.robot))
 }
 
+/// The commands so far, by steps and at their own times.
+type Sent = (CommandHistory, Pieces);
+
 /// Returns the steps of logs, each with the commands so far.
-fn sent(logs: &Logs) -> impl Iterator<Item = (MotionSample, CommandHistory)> {
+fn sent(logs: &Logs) -> impl Iterator<Item = (MotionSample, Sent)> {
     let (mut run, mut rows, mut history) = (0, 0, RunHistory::default());
     samples::steps(logs).map(move |step| {
         if step.run != run {
             (run, rows, history) = (step.run, 0, RunHistory::default());
         }
         while rows <= step.row {
-            history.command(logs.runs[run].rows.at(rows).command());
+            history.command_of(&logs.runs[run].rows, rows);
             rows += 1;
         }
-        (step, *history.commands())
+        (step, (*history.commands(), *history.pieces()))
     })
 }
 
-fn filtered(drive: &FilteredDrive, step: MotionSample, commands: &CommandHistory, robot: &Robot) -> MotionSample {
-    let speeds = drive.speeds(commands, 0, robot);
+fn filtered(drive: &FilteredDrive, step: MotionSample, (commands, pieces): &Sent, robot: &Robot) -> MotionSample {
+    let speeds = drive.speeds_of(commands, pieces, robot);
     MotionSample { speeds: speeds.inputs(), lateral_cm: step.lateral_cm - speeds.drift_cm, ..step }
 }
 
@@ -134,7 +138,7 @@ struct Regression<'a> {
     /// Scales commands to about one.
     share: f32,
     /// The steps that are used, each with the commands so far.
-    steps: Vec<(MotionSample, CommandHistory)>,
+    steps: Vec<(MotionSample, Sent)>,
 }
 
 impl<'a> Regression<'a> {

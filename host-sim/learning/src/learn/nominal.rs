@@ -1,6 +1,6 @@
 //! Learns the reference of a simulator: its nominal behaviour beyond the networks, relative to which the gap is measured.
 
-use super::{beam, drive_filter, familiar, place_bound, sensor_law};
+use super::{beam, drive_filter, familiar, place_bound, sensor_law, wheels};
 use mindgap_foundations::motion::{Axis, Motion};
 use mindgap_foundations::statistics::ridge;
 use mindgap_foundations::statistics::summary::root_mean_square;
@@ -9,6 +9,7 @@ use mindgap_models::simulator::Simulator;
 use mindgap_models::simulator::ensemble::CommandScale;
 use mindgap_models::simulator::nominal::NominalModel;
 use mindgap_models::simulator::nominal::motion_bias::{FEATURES, MotionBias, Precision, features, products};
+use mindgap_models::simulator::residuals::ConstantReading;
 use mindgap_models::sonar::{FirstEchoLaw, SensorLaw};
 
 /// Number of folds of cross-validation.
@@ -22,7 +23,17 @@ const FEWEST: usize = 100;
 /// Learns the reference of a simulator with trained networks from its training logs; `first_echo` is the law of its sensor
 /// with poses as logged.
 pub fn learn(simulator: &Simulator, first_echo: Option<FirstEchoLaw>, logs: &Logs) -> NominalModel {
-    let sonar = beam::learn(simulator.constant_reading, logs);
+    let sonar = learn_sonar(simulator.constant_reading, first_echo, logs);
+    NominalModel { motion: motion(simulator, logs), wheels: wheels::learn(simulator, logs), ..sonar }
+}
+
+/// Learns the same of a range sensor alone, whose networks show this constant reading.
+pub fn learn_sonar(
+    constant_reading: Option<ConstantReading>,
+    first_echo: Option<FirstEchoLaw>,
+    logs: &Logs,
+) -> NominalModel {
+    let sonar = beam::learn(constant_reading, logs);
     let with_seen = |law: SensorLaw| {
         let seen = place_bound::seen(&law, logs);
         (law, seen)
@@ -39,7 +50,7 @@ pub fn learn(simulator: &Simulator, first_echo: Option<FirstEchoLaw>, logs: &Log
     let seen = seen.unwrap_or_default();
     let familiar = law.as_ref().and_then(|law| familiar::learn(law, &seen, &logs.scene));
     let place_bound = place_bound::learn(&seen);
-    NominalModel { motion: motion(simulator, logs), sonar, first_echo, place_bound, familiar }
+    NominalModel { motion: None, wheels: None, sonar, first_echo, place_bound, familiar }
 }
 
 fn motion(simulator: &Simulator, logs: &Logs) -> Option<MotionBias> {

@@ -9,8 +9,11 @@ use super::{drive_filter, echo_law, ensemble, nominal, paper, scatter};
 use mindgap_foundations::error::{Error, Result};
 use mindgap_foundations::executor::{self, Executor};
 use mindgap_foundations::motion::Axis;
+use mindgap_logs::heard::Heard;
+use mindgap_logs::range_sensor::RangeSensor;
 use mindgap_logs::{Logs, Robot, samples};
 use mindgap_models::effects::drive_filter::DriveFilter;
+use mindgap_models::simulator::further_sensor::FurtherSensor;
 use mindgap_models::simulator::residuals::{ConstantReading, motion_context};
 use mindgap_models::simulator::{Learned, Missing, Origin, SCHEMA, Simulator};
 
@@ -55,12 +58,29 @@ pub enum Trainer {
 }
 
 /// Progress of the training of one network.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Progress {
-    /// Name of the network.
-    pub network: &'static str,
+    /// Name of the network; that of a further range sensor ends in `_NAME`.
+    pub network: String,
     /// Number of evaluations over all samples so far; the fast trainer reports it at the end only.
     pub evaluations: usize,
+}
+
+/// Trains a simulator on logs as each of the robot's range sensors heard them, the first sensor first.
+///
+/// # Errors
+/// As [`train`].
+pub fn train_sensors(
+    executor: &dyn Executor,
+    heard: &[Heard],
+    trainer: &Trainer,
+    shapes: &Shapes,
+    seed: u64,
+    watch: &dyn Fn(Progress),
+) -> Result<Simulator> {
+    let simulator = train(executor, &heard[0].logs, trainer, shapes, seed, watch)?;
+    let add = |simulator, heard| add_sensor(simulator, executor, heard, (trainer, shapes), watch);
+    heard[1..].iter().try_fold(simulator, add)
 }
 
 /// Trains the networks that `logs` support, one after the other.
@@ -80,25 +100,12 @@ pub fn train(
         Trainer::Fast => executor::once(executor, || Ok(drive_filter::learn(logs)))?,
     };
     let data = Datasets::behind(filter, logs);
-    let mut network_trainer =
-        NetworkTrainer { executor, trainer, seed, runs: logs.runs.len(), watch, missing: Vec::new() };
-    // D and α themselves are the context of the sonar networks.
-    let (motion, sonar) = (motion_context, |inputs: &[f32; 2]| *inputs);
+    let mut network_trainer = NetworkTrainer::new(executor, trainer, seed, logs.runs.len(), watch);
     let value = Kind { activation: Activation::Linear, loss: Loss::Squares };
-    let probability = Kind { activation: Activation::Ramp, loss: Loss::Logistic };
-    let reading = Kind { activation: Activation::Linear, loss: Loss::Mixture };
-    let turn = network_trainer.train("turn", &data.turn, shapes.turn, value, motion)?;
-    let forward = network_trainer.train("forward", &data.forward, shapes.forward, value, motion)?;
-    let lateral = network_trainer.train("lateral", &data.lateral, shapes.lateral, value, motion)?;
-    let echo_probability = network_trainer.train(
-        "echo_probability",
-        &data.echo_probability,
-        shapes.echo_probability,
-        probability,
-        sonar,
-    )?;
-    let mut echo_value = network_trainer.train("echo_value", &data.echo_value, shapes.echo_value, reading, sonar)?;
-    let constant_reading = echo_value.as_mut().and_then(|value| split_constant_reading(value, &data.echo_value));
+    let turn = network_trainer.train("turn", &data.turn, shapes.turn, value, motion_context)?;
+    let forward = network_trainer.train("forward", &data.forward, shapes.forward, value, motion_context)?;
+    let lateral = network_trainer.train("lateral", &data.lateral, shapes.lateral, value, motion_context)?;
+    let Echoes { echo_probability, echo_value, constant_reading } = network_trainer.train_echoes(&data, shapes)?;
     let missing = blame_missing_sensor(network_trainer.missing, &logs.robot);
     if missing.len() == NETWORKS.len() {
         let reasons: Vec<String> = missing.iter().map(|m| format!("{}: {}", m.network, m.reason)).collect();
@@ -116,6 +123,7 @@ pub fn train(
             runs: logs.runs.len(),
         },
         robot: logs.robot,
+        sensor: logs.sensors().first_table().map(str::to_owned),
         commands: [low as f32, high as f32],
         filter,
         turn,
@@ -125,6 +133,7 @@ pub fn train(
         echo_value,
         first_echo: first_echo.as_ref().map(|law| law.sensor.clone()),
         constant_reading,
+        further: Vec::new(),
         reference: None,
         ensemble: None,
         table_one: None,
@@ -142,6 +151,42 @@ pub fn train(
     }
     simulator.reference = Some(reference);
     simulator.ensemble = executor::once(executor, || Ok(ensemble::learn(&simulator, logs)))?;
+    Ok(simulator)
+}
+
+/// Trains the networks of a further range sensor on logs as it heard them, and adds it to a simulator that was trained on the
+/// others of these logs' columns. The networks that they do not support are added to the missing ones.
+///
+/// # Errors
+/// When the executor cannot finish.
+fn add_sensor(
+    mut simulator: Simulator,
+    executor: &dyn Executor,
+    heard: &Heard,
+    (trainer, shapes): (&Trainer, &Shapes),
+    watch: &dyn Fn(Progress),
+) -> Result<Simulator> {
+    let (seed, Heard { sensor, logs }) = (simulator.origin.seed, heard);
+    let named = |progress: Progress| {
+        watch(Progress { network: Missing::network_of(&progress.network, sensor), ..progress });
+    };
+    let data = Datasets::from_logs(logs);
+    let mut network_trainer = NetworkTrainer::new(executor, trainer, seed, logs.runs.len(), &named);
+    let echoes = network_trainer.train_echoes(&data, shapes)?;
+    let missing = network_trainer.missing.into_iter();
+    simulator.missing.extend(missing.map(|m| Missing { network: Missing::network_of(&m.network, sensor), ..m }));
+    let first_echo = executor::once(executor, || Ok(echo_law::learn(logs, seed)))?;
+    let law = first_echo.as_ref().map(|law| law.sensor.clone());
+    let learn = || nominal::learn_sonar(echoes.constant_reading, first_echo.map(|law| law.as_logged), logs);
+    let reference = executor::once(executor, || Ok(learn()))?;
+    simulator.further.extend(logs.robot.ultrasonic.map(|mount| FurtherSensor {
+        sensor: RangeSensor::new(sensor.clone(), mount),
+        echo_probability: echoes.echo_probability,
+        echo_value: echoes.echo_value,
+        first_echo: law,
+        constant_reading: echoes.constant_reading,
+        reference: Some(reference),
+    }));
     Ok(simulator)
 }
 
@@ -226,6 +271,13 @@ struct NetworkTrainer<'a> {
     missing: Vec<Missing>,
 }
 
+/// The networks of a range sensor.
+struct Echoes {
+    echo_probability: Option<Learned<2>>,
+    echo_value: Option<Learned<2>>,
+    constant_reading: Option<ConstantReading>,
+}
+
 /// Kind of quantity that a network predicts.
 #[derive(Clone, Copy)]
 struct Kind {
@@ -234,7 +286,30 @@ struct Kind {
     loss: Loss,
 }
 
-impl NetworkTrainer<'_> {
+impl<'a> NetworkTrainer<'a> {
+    fn new(
+        executor: &'a dyn Executor,
+        trainer: &'a Trainer,
+        seed: u64,
+        runs: usize,
+        watch: &'a dyn Fn(Progress),
+    ) -> Self {
+        NetworkTrainer { executor, trainer, seed, runs, watch, missing: Vec::new() }
+    }
+
+    fn train_echoes(&mut self, data: &Datasets, shapes: &Shapes) -> Result<Echoes> {
+        let probability = Kind { activation: Activation::Ramp, loss: Loss::Logistic };
+        let reading = Kind { activation: Activation::Linear, loss: Loss::Mixture };
+        // D and α themselves are the context of the sonar networks.
+        let context = |inputs: &[f32; 2]| *inputs;
+        let [of_probability, of_value] = [shapes.echo_probability, shapes.echo_value];
+        let echo_probability =
+            self.train("echo_probability", &data.echo_probability, of_probability, probability, context)?;
+        let mut echo_value = self.train("echo_value", &data.echo_value, of_value, reading, context)?;
+        let constant_reading = echo_value.as_mut().and_then(|value| split_constant_reading(value, &data.echo_value));
+        Ok(Echoes { echo_probability, echo_value, constant_reading })
+    }
+
     fn train<const N: usize>(
         &mut self,
         network: &'static str,
@@ -250,7 +325,7 @@ impl NetworkTrainer<'_> {
         }
         let held_out = data.of_runs(|run| is_held_out(run, self.runs));
         let judged = if held_out.is_empty() { &fitted } else { &held_out };
-        let watch = |evaluations| (self.watch)(Progress { network, evaluations });
+        let watch = |evaluations| (self.watch)(Progress { network: network.into(), evaluations });
         watch(0);
         let (trained, evaluations) = match self.trainer {
             Trainer::Paper(options) => {

@@ -31,7 +31,7 @@ pub fn rates(logs: &mut Logs) -> Vec<Finding> {
     let mut findings = Vec::new();
     if in_seconds.contains(&true) {
         for (run, _) in logs.runs.iter_mut().zip(&in_seconds).filter(|(_, is_affected)| **is_affected) {
-            run.rows.edit_each(|row| row.t_ms *= 1000.0);
+            run.rows.scale_times(1000.0);
         }
         findings.push(Finding {
             id: "clock_seconds",

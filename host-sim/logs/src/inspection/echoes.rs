@@ -4,10 +4,12 @@ use super::finding::{Finding, Handling, Part, RunRows};
 use super::map::{fitting_fraction, ranges_along_axis};
 use super::segments::MIN_SAMPLES;
 use crate::{Logs, Row, Ultrasonic};
+use mindgap_foundations::geometry::{Pose, cast};
 use mindgap_foundations::statistics::summary::median;
 
-/// Centimetres per unit, for units that sensor drivers use.
-const UNITS: [(f64, &str); 3] = [(100.0, "metres"), (0.1, "millimetres"), (2.54, "inches")];
+/// Centimetres per unit, for units that sensor drivers use. Sound takes 58.3 us for a centimetre, there and back.
+const UNITS: [(f64, &str); 4] =
+    [(100.0, "metres"), (0.1, "millimetres"), (2.54, "inches"), (1.0 / 58.3, "microseconds of the echo")];
 /// Minimum fraction of readings that fit the walls in their true unit.
 const MIN_FITTING: f64 = 0.3;
 /// That fraction must exceed the one in centimetres by this factor. With its wide beam, a real sensor fits a quarter to half
@@ -19,6 +21,106 @@ const UNBOUNDED_CM: f64 = 1e6;
 const NXT_NO_ECHO: f64 = 255.0;
 /// A number beyond the sensor's range that occurs this often stands for no echo.
 const MIN_REPEATS: usize = 3;
+
+/// One number may stand for no echo within the sensor's range if at most this fraction of rows has no reading,
+const MAX_EMPTY: f64 = 0.02;
+/// and it makes up at least this fraction of the readings.
+const MIN_NONE_FRACTION: f64 = 0.08;
+/// Other readings stay below this fraction of a number that stands for no echo, or above its inverse;
+const FAR_BELOW: f64 = 0.85;
+/// or walls are nearer than the number in at least this fraction of its rows.
+const MIN_NEARER: f64 = 0.3;
+/// The end of the sensor's range, as a fraction of it.
+const END_OF_RANGE: f64 = 0.98;
+/// Readings at places closer than this, cm or rad, are of one place, where they may repeat.
+const PLACE_CM: f64 = 1.0;
+const PLACE_RAD: f64 = 0.03;
+/// At most this fraction of other readings lies beyond a number that counts as the largest.
+const BEYOND: f64 = 0.01;
+
+/// The largest reading, if it repeats exactly at many places.
+pub struct Repeated {
+    /// The reading, cm.
+    pub cm: f64,
+    /// Its rows, as pairs of run and row index.
+    pub rows: Vec<(usize, usize)>,
+    /// Fraction of these rows in which the wall ahead is farther away than the reading; `None` if too few face a wall.
+    pub farther: Option<f64>,
+}
+
+impl Repeated {
+    /// Returns the largest reading within the sensor's range, if it makes up at least a fraction of the readings.
+    pub fn largest(logs: &Logs, min_fraction: f64) -> Option<Self> {
+        let max_cm = logs.robot.ultrasonic?.max_cm;
+        let within = |row: &Row| row.echo_cm.filter(|echo| *echo <= max_cm);
+        let mut readings: Vec<f64> =
+            logs.runs.iter().flat_map(|run| &run.rows).filter_map(|row| within(&row)).collect();
+        readings.sort_by(f64::total_cmp);
+        let equal = readings.chunk_by(|a, b| a == b).max_by_key(|equal| equal.len())?;
+        let cm = equal[0];
+        let beyond = readings.iter().filter(|echo| **echo > cm).count() as f64;
+        let others = (readings.len() - equal.len()) as f64;
+        let is_frequent = equal.len() as f64 >= min_fraction * readings.len() as f64;
+        if !is_frequent || beyond > BEYOND * others {
+            return None;
+        }
+        let rows = rows_where(logs, |row| row.echo_cm == Some(cm));
+        let places = places(logs, &rows);
+        (places >= MIN_SAMPLES).then(|| {
+            let distances_cm = distances_cm(logs, &rows);
+            let farther = distances_cm.iter().filter(|distance_cm| **distance_cm > cm + margin_cm(cm)).count() as f64;
+            let farther = (distances_cm.len() >= MIN_SAMPLES).then(|| farther / distances_cm.len() as f64);
+            Repeated { cm, rows, farther }
+        })
+    }
+
+    /// Returns whether it stands for no echo: it comes at the end of the range, or nothing comes close to it, or walls are nearer.
+    fn is_no_echo(&self, logs: &Logs) -> bool {
+        let Some(sensor) = logs.robot.ultrasonic else { return false };
+        let others =
+            || logs.runs.iter().flat_map(|run| &run.rows).filter_map(|row| row.echo_cm).filter(|cm| *cm < self.cm);
+        let (all, close) = (others().count() as f64, others().filter(|cm| *cm > FAR_BELOW * self.cm).count() as f64);
+        let nearer = || {
+            let distances_cm = distances_cm(logs, &self.rows);
+            let nearer = distances_cm.iter().filter(|distance_cm| **distance_cm < self.cm - margin_cm(self.cm)).count();
+            distances_cm.len() >= MIN_SAMPLES && nearer as f64 >= MIN_NEARER * distances_cm.len() as f64
+        };
+        self.cm >= END_OF_RANGE * sensor.max_cm || close <= BEYOND * all || nearer()
+    }
+}
+
+/// Returns how far a wall may be from a reading of it.
+fn margin_cm(cm: f64) -> f64 {
+    (0.1 * cm).max(10.0)
+}
+
+/// Returns the number of different places among rows.
+fn places(logs: &Logs, rows: &[(usize, usize)]) -> usize {
+    let poses = rows.iter().filter_map(|(run, row)| logs.runs[*run].rows.at(*row).pose);
+    let mut last: Option<Pose> = None;
+    poses
+        .filter(|pose| {
+            let is_new = last.is_none_or(|last| {
+                let change = last.relative(pose);
+                change.position_cm.length() > PLACE_CM || change.heading_rad.abs() > PLACE_RAD
+            });
+            if is_new {
+                last = Some(*pose);
+            }
+            is_new
+        })
+        .count()
+}
+
+/// Returns the distances along the sensor's axis at rows that face a wall, cm.
+fn distances_cm(logs: &Logs, rows: &[(usize, usize)]) -> Vec<f64> {
+    let sides = logs.scene.sides();
+    let distance = |(run, row): &(usize, usize)| {
+        let sensor = logs.robot.sensor_pose(&logs.runs[*run].rows.at(*row).pose?);
+        Some(cast(&sides, sensor.position_cm, sensor.direction())?.distance_cm)
+    };
+    rows.iter().filter_map(distance).collect()
+}
 
 /// Converts readings that fit the walls in another unit and not in centimetres.
 pub fn units(logs: &mut Logs) -> Vec<Finding> {
@@ -63,9 +165,11 @@ pub fn no_echo_numbers(logs: &mut Logs) -> Vec<Finding> {
     // Readings beyond the range scatter, unless one number stands for no echo and makes up most of them.
     let repeated =
         equal.filter(|equal| equal.len() >= MIN_REPEATS && 2 * equal.len() > beyond.len()).map(|equal| equal[0]);
+    let within = no_echo_within_range(logs);
     let is_no_echo = |echo: f64| {
         let is_nxt_no_echo = echo == NXT_NO_ECHO && echo > max_cm;
-        echo == 0.0 && min_cm > 0.0 || echo >= UNBOUNDED_CM || is_nxt_no_echo || Some(echo) == repeated
+        let is_repeated = Some(echo) == repeated || Some(echo) == within;
+        echo == 0.0 && min_cm > 0.0 || echo >= UNBOUNDED_CM || is_nxt_no_echo || is_repeated
     };
     let mut numbers: Vec<f64> = echoes().filter(|echo| is_no_echo(*echo)).collect();
     let rows = rows_where(logs, |row| row.echo_cm.is_some_and(is_no_echo));
@@ -90,6 +194,15 @@ pub fn no_echo_numbers(logs: &mut Logs) -> Vec<Finding> {
     }]
 }
 
+/// Returns the number within the sensor's range that stands for no echo, if there is one.
+fn no_echo_within_range(logs: &Logs) -> Option<f64> {
+    let rows = logs.rows() as f64;
+    let empty = logs.runs.iter().flat_map(|run| &run.rows).filter(|row| row.echo_cm.is_none()).count() as f64;
+    let repeated = Repeated::largest(logs, MIN_NONE_FRACTION).filter(|_| empty <= MAX_EMPTY * rows)?;
+    // A number that makes up nearly all readings is of a stuck sensor.
+    (2 * repeated.rows.len() < logs.rows() && repeated.is_no_echo(logs)).then_some(repeated.cm)
+}
+
 /// Reports readings mostly beyond the sensor's range, whose unit is unknown.
 fn mostly_beyond_range(logs: &Logs, beyond: &[f64]) -> Vec<Finding> {
     let rows = rows_where(logs, |row| row.echo_cm.is_some());
@@ -101,13 +214,14 @@ fn mostly_beyond_range(logs: &Logs, beyond: &[f64]) -> Vec<Finding> {
         rows_by_run: RunRows::group(logs, &rows),
         handling: Handling::Reported,
         withholds: &[Part::Sonar],
-        sentence:
-            "Most readings exceed ultrasonic.max_cm: write echo_cm in centimetres, or correct max_cm in robot.toml."
-                .into(),
+        sentence: "Most readings exceed ultrasonic.max_cm: write echo_cm in centimetres (microseconds of the echo divided by 58.3), \
+                   or correct max_cm in robot.toml."
+            .into(),
     }]
 }
 
-fn rows_where(logs: &Logs, matches: impl Fn(&Row) -> bool) -> Vec<(usize, usize)> {
+/// Returns the matching rows as pairs of run and row index.
+pub fn rows_where(logs: &Logs, matches: impl Fn(&Row) -> bool) -> Vec<(usize, usize)> {
     let matching = |run: usize| {
         let rows = logs.runs[run].rows.iter().enumerate().filter(|(_, row)| matches(row));
         rows.map(|(row, _)| (run, row)).collect::<Vec<_>>()

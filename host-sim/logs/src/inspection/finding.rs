@@ -89,6 +89,12 @@ impl RunRows {
 }
 
 impl Finding {
+    /// Reports rows, given as sorted pairs of run and row index, whose readings must not be compared.
+    pub fn of_readings(logs: &Logs, id: &'static str, rows: &[(usize, usize)], sentence: String) -> Self {
+        let rows_by_run = RunRows::group(logs, rows);
+        Finding { id, rows_by_run, handling: Handling::Reported, withholds: &[Part::Sonar], sentence }
+    }
+
     /// Removes the wrong poses of rows, given as pairs of run and row index, and returns the finding; `None` without rows.
     pub fn without_poses(
         logs: &mut Logs,
@@ -102,6 +108,11 @@ impl Finding {
         let rows_by_run = RunRows::group(logs, rows);
         rows.iter().for_each(|(run, row)| logs.runs[*run].rows.edit(*row, |row| row.pose = None));
         Some(Finding { id, rows_by_run, handling: Handling::Excluded, withholds: &[], sentence: sentence.into() })
+    }
+
+    /// Returns the finding as one of a range sensor.
+    pub fn of_sensor(self, sensor: &str) -> Self {
+        Finding { sentence: format!("Range sensor {sensor}: {}", self.sentence), ..self }
     }
 
     /// Returns the finding as one line for people.

@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 use glam::DVec2;
 
 use super::finding::{Finding, Handling, Part, RunRows};
-use super::map::{fitting_fraction, ranges_along_axis};
+use super::map::{MIN_READINGS, fitting_fraction, ranges_along_axis};
 use super::segments::{MIN_SAMPLES, Segment, segments, straight, turning};
 use crate::{Logs, Robot};
 use mindgap_foundations::geometry::{Pose, Rectangle, wrap_rad};
@@ -18,8 +18,13 @@ const MAX_AGREEMENT_OF_WRONG_FRAME: f64 = 0.5;
 /// Minimum gain, in the right frame, of the fraction of readings that fit the walls. A turned rectangular room looks half the
 /// same, and whatever the robot's faults, the given frame fits best if it is right, if only by a few hundredths.
 const MIN_FITTING_GAIN: f64 = 0.2;
-/// With fewer readings the fraction may be off by half of that gain.
-const MIN_READINGS: usize = 100;
+
+/// Sine of the largest difference between headings that count as one.
+const SAME_HEADING: f64 = 0.01;
+/// Minimum commanded rotation that must be seen in headings, rad: one turn.
+const MIN_ASKED_RAD: f64 = 2.0 * PI;
+/// Minimum path of a robot that moves, cm.
+const MIN_MOVED_CM: f64 = 50.0;
 
 /// Returns the fractions of straight segments that run along the heading turned by 0 to 3 quarter turns, then the same with
 /// clockwise headings; `None` with too few segments.
@@ -70,8 +75,24 @@ impl Orientation {
     }
 }
 
-/// Reports frames that do not fit the motion or the walls.
-pub fn check(logs: &Logs) -> Vec<Finding> {
+/// Reports a frame that does not fit the motion or the walls. If that of all runs fits, excludes the runs of a minority whose
+/// commands do not, which can hide what all the others have.
+pub fn check(logs: &mut Logs) -> Vec<Finding> {
+    let of_all_runs = check_whole(logs);
+    if !of_all_runs.is_empty() {
+        return of_all_runs;
+    }
+    let mut found = exclude_runs(logs);
+    if !found.is_empty() {
+        found.extend(check_whole(logs));
+    }
+    found
+}
+
+fn check_whole(logs: &Logs) -> Vec<Finding> {
+    if let Some(found) = without_rotation(logs) {
+        return vec![found];
+    }
     let Orientation { direction, is_reversed } = Orientation::of(logs);
     let (id, sentence): (_, &str) = match (direction, is_reversed) {
         (0, false) => return compare_with_walls(logs, &ROTATIONS, "frame_turned").into_iter().collect(),
@@ -112,6 +133,66 @@ pub fn check(logs: &Logs) -> Vec<Finding> {
     vec![reported(logs, id, sentence, &[Part::Motion, Part::Sonar])]
 }
 
+/// Excludes the runs of a minority whose commands are reversed or exchanged.
+fn exclude_runs(logs: &mut Logs) -> Vec<Finding> {
+    let faults: Vec<Option<(&'static str, &'static str)>> = logs.runs.iter().map(|run| fault(logs, run)).collect();
+    if 2 * faults.iter().flatten().count() >= faults.len() {
+        return Vec::new();
+    }
+    let kinds = [REVERSED_RUNS, EXCHANGED_RUNS];
+    let found = kinds.iter().filter_map(|kind| {
+        let is_affected = |(_, fault): &(RunRows, &Option<(&'static str, &'static str)>)| **fault == Some(*kind);
+        let rows_by_run = RunRows::all(logs).into_iter().zip(&faults).filter(is_affected).map(|(rows, _)| rows);
+        let rows_by_run: Vec<RunRows> = rows_by_run.collect();
+        let names: Vec<&str> = rows_by_run.iter().map(|rows| rows.run.as_str()).collect();
+        let sentence = format!("In {}, {}", names.join(", "), kind.1);
+        let (handling, withholds): (_, &[Part]) = (Handling::Excluded, &[]);
+        (!rows_by_run.is_empty()).then_some(Finding { id: kind.0, rows_by_run, handling, withholds, sentence })
+    });
+    let found = found.collect();
+    let mut faults = faults.iter();
+    logs.runs.retain(|_| faults.next().is_some_and(Option::is_none));
+    found
+}
+
+const REVERSED_RUNS: (&str, &str) = (
+    "commands_reversed",
+    "the robot drives backwards and turns the opposite way, unlike in the other runs: the commands are negated there.",
+);
+const EXCHANGED_RUNS: (&str, &str) = (
+    "left_right_exchanged",
+    "the robot turns the opposite way, unlike in the other runs: left and right are exchanged there.",
+);
+
+/// Returns the fault of a single run's commands.
+fn fault(logs: &Logs, run: &crate::Run) -> Option<(&'static str, &'static str)> {
+    let alone = Logs { robot: logs.robot, scene: crate::Scene::default(), runs: vec![run.clone()] };
+    match Orientation::of(&alone) {
+        Orientation { direction: 2, is_reversed: true } => Some(REVERSED_RUNS),
+        Orientation { direction: 0, is_reversed: true } => Some(EXCHANGED_RUNS),
+        _ => None,
+    }
+}
+
+/// Reports headings that never change although the robot moves and the commands turn it.
+fn without_rotation(logs: &Logs) -> Option<Finding> {
+    let segments = segments(logs);
+    let asked_rad: f64 = segments.iter().map(|segment| segment.commanded.turn_rad.abs()).sum();
+    let moved_cm: f64 = segments.iter().map(|segment| segment.chord_cm.length()).sum();
+    let headings = || logs.runs.iter().flat_map(|run| &run.rows).filter_map(|row| Some(row.pose?.heading_rad));
+    let first_rad = headings().next()?;
+    // A rotation about another axis may look like half a turn.
+    let is_constant = headings().all(|rad| libm::sin(rad - first_rad).abs() < SAME_HEADING);
+    (is_constant && asked_rad > MIN_ASKED_RAD && moved_cm > MIN_MOVED_CM).then(|| {
+        let sentence = format!(
+            "The heading never changes, although the commands turn the robot by {:.0} degrees: the track has no rotation, or \
+             another axis than z points upwards. Write heading_deg, or set the tracker's up axis to Z.",
+            asked_rad.to_degrees()
+        );
+        reported(logs, "heading_constant", &sentence, &[Part::Motion, Part::Sonar])
+    })
+}
+
 const EXCHANGED: &str = "The robot turns right when commanded to turn left: left and right seem exchanged (or, if not, the whole \
                          frame is mirrored: y_cm and heading_deg together).";
 
@@ -119,11 +200,18 @@ fn reported(logs: &Logs, id: &'static str, sentence: &str, withholds: &'static [
     Finding { id, rows_by_run: RunRows::all(logs), handling: Handling::Reported, withholds, sentence: sentence.into() }
 }
 
-/// Whether the robot turns against the commands.
+/// Whether the robot turns against the commands. Observed turns count by their size, since small ones are mostly noise; one that
+/// is larger than any commanded turn is a jump of the heading, and counts as that commanded turn.
 fn turns_are_reversed(segments: &[Segment]) -> bool {
     let turning = turning(segments);
-    let against = turning.iter().filter(|segment| segment.turn_rad * segment.commanded.turn_rad < 0.0).count() as f64;
-    turning.len() >= MIN_SAMPLES && against >= MIN_AGREEMENT * turning.len() as f64
+    let largest_rad = turning.iter().map(|segment| segment.commanded.turn_rad.abs()).fold(0.0, f64::max);
+    let (mut against_rad, mut all_rad) = (0.0, 0.0);
+    for segment in &turning {
+        let size_rad = segment.turn_rad.abs().min(largest_rad);
+        all_rad += size_rad;
+        against_rad += if segment.turn_rad * segment.commanded.turn_rad < 0.0 { size_rad } else { 0.0 };
+    }
+    turning.len() >= MIN_SAMPLES && all_rad > 0.0 && against_rad >= MIN_AGREEMENT * all_rad
 }
 
 /// A symmetry of a rectangle: whether x and y are exchanged, then whether x and whether y are flipped.

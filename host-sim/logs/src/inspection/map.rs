@@ -9,6 +9,18 @@ const RELATIVE_TOLERANCE: f64 = 0.1;
 /// A reading also fits within this length, cm: the beam is wide, and the robot moves during the measurement.
 const TOLERANCE_CM: f64 = 5.0;
 
+/// With fewer readings, the fraction that fits the walls is too uncertain to compare frames.
+pub const MIN_READINGS: usize = 100;
+
+/// Returns the fraction of readings that fit the walls, counted as zero where none is expected; `None` with too few readings.
+pub fn fit_to_walls(logs: &Logs) -> Option<f64> {
+    let readings = logs.runs.iter().flat_map(|run| &run.rows).filter(|row| row.echo_cm.is_some()).count();
+    let pairs = ranges_along_axis(logs, |pose| *pose);
+    let is_decidable = readings >= MIN_READINGS && !logs.scene.sides().is_empty();
+    is_decidable
+        .then(|| fitting_fraction(&pairs, 1.0) * pairs.len() as f64 / readings.div_ceil(stride(logs.rows())) as f64)
+}
+
 /// Returns pairs of a reading and the distance along the sensor's axis, cm, with poses transformed by `change`; large logs
 /// are subsampled.
 pub fn ranges_along_axis(logs: &Logs, change: impl Fn(&Pose) -> Pose) -> Vec<[f64; 2]> {

@@ -12,6 +12,10 @@ use mindgap_foundations::geometry::wrap_rad;
 /// they were measured; the units themselves are at least a factor of ten apart.
 const WITHIN: f64 = 2.0;
 
+/// Gains of length and turn that differ by at most this fraction have one cause,
+const SAME_SCALE: f64 = 0.1;
+/// which is not a fault of the robot from this factor on.
+const UNUSUAL_SCALE: f64 = 1.8;
 /// Factor by which turns shrink if radians are read as degrees.
 const RADIANS: f64 = PI / 180.0;
 
@@ -38,9 +42,7 @@ pub fn commands(logs: &mut Logs) -> Vec<Finding> {
         ),
     };
     if handling == Handling::Corrected {
-        logs.runs.iter_mut().for_each(|run| {
-            run.rows.edit_each(|row| (row.left, row.right) = (row.left * 100.0, row.right * 100.0));
-        });
+        logs.runs.iter_mut().for_each(|run| run.rows.scale_commands(100.0));
     }
     vec![found]
 }
@@ -101,6 +103,24 @@ pub fn lengths(logs: &mut Logs) -> Vec<Finding> {
             "The robot drives {length:.3} times as fast as robot.toml states: full_speed_cm_s seems to be in {unit}; write cm/s."
         ),
     }]
+}
+
+/// Reports a robot that moves and turns by one factor of what is commanded, far from one.
+pub fn scale(logs: &Logs) -> Option<Finding> {
+    let gains = Gains::of(&segments(logs), &logs.robot);
+    let (length, turn) = gains.length.zip(gains.turn.map(f64::abs))?;
+    let is_one_factor = (length / turn - 1.0).abs() <= SAME_SCALE;
+    let is_usual = (1.0 / UNUSUAL_SCALE..UNUSUAL_SCALE).contains(&length);
+    (is_one_factor && !is_usual).then(|| Finding {
+        id: "motion_scale",
+        rows_by_run: RunRows::all(logs),
+        handling: Handling::Reported,
+        withholds: &[],
+        sentence: format!(
+            "The robot moves and turns {length:.2} times as far as commanded: correct full_speed_cm_s in robot.toml, or the clock, which \
+             runs at another rate, as in a simulation that is not in real time (use its /clock)."
+        ),
+    })
 }
 
 /// Returns whether straight segments have a consistent direction to the heading, unlike noise; true with too few segments.

@@ -3,10 +3,11 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::catalogue::{CATALOGUE, Candidate};
+use super::catalogue::{CATALOGUE, Candidate, place};
 use super::own;
 use super::own::definition::Definition;
 use super::parameter::Settings;
+use super::variant::Place;
 use mindgap_files::did_you_mean;
 use mindgap_logs::Robot;
 
@@ -24,6 +25,9 @@ pub struct AppliedEffect {
     /// The definition of a user's own effect.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub definition: Option<Definition>,
+    /// Name of the further range sensor that it concerns; readings of the first sensor are then unchanged.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sensor: Option<String>,
 }
 
 impl AppliedEffect {
@@ -34,7 +38,13 @@ impl AppliedEffect {
             variant: candidate.variant.id.into(),
             parameters: candidate.variant.settings(values, robot),
             definition: own::definition_of(candidate.variant),
+            sensor: None,
         }
+    }
+
+    /// Returns whether it sits in a range sensor and nowhere else.
+    pub fn is_of_sensor(&self) -> bool {
+        place(&self.effect) == Some(Place::Sensor)
     }
 
     /// Returns the variant and its values.
@@ -140,7 +150,7 @@ mod tests {
         let robot = mindgap_built_in_robot::default_robot();
         let resolve = |effect: &str, variant: &str, parameters: &str| {
             let parameters = serde_json::from_str(parameters).unwrap();
-            AppliedEffect { effect: effect.into(), variant: variant.into(), parameters, definition: None }
+            AppliedEffect { effect: effect.into(), variant: variant.into(), parameters, definition: None, sensor: None }
                 .resolve(&robot)
         };
         let latency = |parameters: &str| resolve("latency", "delay", parameters);

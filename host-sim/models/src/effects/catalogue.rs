@@ -39,6 +39,7 @@ catalogue! {
     sonar_scale
     sonar_offset
     sonar_yaw
+    sonar_pitch
     sonar_beam
     sonar_ghost
     sonar_dropout
@@ -52,6 +53,8 @@ catalogue! {
     lens_distortion
     marker_offset
     compass_disturbance
+    heading_lag
+    tracker_delay
 }
 
 /// A variant with the id of its effect.
@@ -153,7 +156,7 @@ mod tests {
     use mindgap_logs::{Robot, Scene};
 
     /// The effects of the table in docs/reference/effects.md.
-    const TABLE: usize = 31;
+    const TABLE: usize = 34;
 
     /// Returns commands, motion and sensor of a step with an effect.
     fn applied(
@@ -244,6 +247,7 @@ mod tests {
         ("sonar_scale", &["factor"]),
         ("sonar_offset", &["cm"]),
         ("sonar_yaw", &["deg"]),
+        ("sonar_pitch", &["cm"]),
         ("sonar_beam", &["factor"]),
         ("sonar_ghost", &["probability", "cm"]),
         ("sonar_dropout", &["probability", "persistence"]),
@@ -258,6 +262,8 @@ mod tests {
         ("lens_distortion", &["per_m2"]),
         ("marker_offset", &["ahead_cm", "left_cm"]),
         ("compass_disturbance", &["deg"]),
+        ("heading_lag", &["ms"]),
+        ("tracker_delay", &["ms"]),
     ];
 
     #[test]

@@ -2,15 +2,12 @@
 
 use glam::DVec2;
 
+use super::pieces::Pieces;
+pub use super::pieces::{CommandHistory, HISTORY};
 use super::scales::{self, reference_cm_s};
 use crate::sonar::echo_law::Surfaces;
 use mindgap_foundations::geometry::{Pose, Wall, bounding_box, cast};
-use mindgap_logs::{Robot, Scene};
-
-/// Number of commands visible to an effect, newest first.
-pub const HISTORY: usize = 16;
-/// Left and right command of the present step and of those before it, newest first; zero before the run began.
-pub type CommandHistory = [[f64; 2]; HISTORY];
+use mindgap_logs::{Robot, Rows, Scene};
 
 /// Number of earlier poses visible to an effect: the oldest reading that is thought of, 1.6 s, at 10 steps a second.
 pub const EARLIER: usize = 16;
@@ -22,6 +19,8 @@ pub struct StepContext {
     pub elapsed_min: f64,
     /// Commands as they were sent.
     pub commands: CommandHistory,
+    /// The same at their own times, where a log knows these.
+    pub pieces: Pieces,
     /// Tracked pose at the start of the step.
     pub pose: Pose,
     /// The same one row earlier, two rows earlier and so on, where it is known.
@@ -50,6 +49,7 @@ pub struct Surroundings {
 #[derive(Clone, Debug, Default)]
 pub struct RunHistory {
     commands: CommandHistory,
+    pieces: Pieces,
     poses: [Option<Pose>; EARLIER],
     echo_cm: Option<Option<f64>>,
 }
@@ -103,6 +103,7 @@ impl Surroundings {
         StepContext {
             elapsed_min: elapsed_ms / 60_000.0,
             commands: history.commands,
+            pieces: history.pieces,
             pose,
             earlier: history.poses,
             faced: None,
@@ -124,6 +125,20 @@ impl RunHistory {
     /// Returns the commands, newest first.
     pub fn commands(&self) -> &CommandHistory {
         &self.commands
+    }
+
+    /// Returns the same at their own times, where a log knows these.
+    pub fn pieces(&self) -> &Pieces {
+        &self.pieces
+    }
+
+    /// The step of a logged row begins.
+    pub fn command_of(&mut self, rows: &Rows, row: usize) {
+        if row == 0 {
+            self.commands = [rows.command_before_start(); HISTORY];
+        }
+        self.command(rows.at(row).command());
+        self.pieces = Pieces::of(rows, row);
     }
 
     /// A step begins with these commands.

@@ -8,6 +8,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::context::{CommandHistory, HISTORY};
+use super::pieces::{Phases, Pieces};
 use super::scales::{command_for, reference_cm_s};
 use super::twist::{twist, wheels};
 use mindgap_logs::Robot;
@@ -69,6 +70,11 @@ impl DriveFilter {
         self.times().iter().all(|steps| *steps <= 0.0) && self.most_change.is_none()
     }
 
+    /// Returns the filter up to the rims, which have no lag of the body.
+    pub fn up_to_the_rims(self) -> Self {
+        DriveFilter { turn_lag_steps: 0.0, drift_factor: 0.0, ..self }
+    }
+
     /// Returns whether its times are at most as long as commands are remembered, and its other numbers are possible.
     pub fn is_sound(&self) -> bool {
         let is_change = |change: &f64| *change > 0.0 && change.is_finite();
@@ -108,19 +114,26 @@ impl DriveFilter {
 #[derive(Clone, Debug)]
 pub struct FilteredDrive {
     filter: DriveFilter,
-    /// The two parts of earlier steps, in which only the speeds at their end matter, and those of the present step: the command
-    /// before still holds in the first.
-    earlier: [Part; 2],
-    present: [Part; 2],
+    /// The segments of a step whose command does not change: the command before still holds in the first.
+    segments: [Segment; 2],
+}
+
+/// A part of every step in which one command is at work.
+#[derive(Clone, Debug)]
+struct Segment {
+    /// The phase of a step in which that was set.
+    phase: usize,
+    /// Whether it was set one step earlier than dead time shifts it by whole steps.
+    ago: usize,
+    /// In earlier steps, in which only the speeds at their end matter, and in the present step.
+    parts: [Part; 2],
 }
 
 impl From<DriveFilter> for FilteredDrive {
     fn from(filter: DriveFilter) -> Self {
         let first = filter.dead_time_steps.max(0.0) % 1.0;
-        let is_exact = filter.turn_lag_steps <= 0.0 && filter.most_change.is_none();
-        let parts = |pieces_per_step: f64| [first, 1.0 - first].map(|d| Part::new(d, pieces_per_step, &filter));
-        let earlier = parts(if is_exact { 1.0 } else { PIECES_PER_STEP });
-        FilteredDrive { filter, earlier, present: parts(PIECES_PER_STEP) }
+        let segment = |ago: usize, duration: f64| Segment { phase: 0, ago, parts: Part::pair(duration, &filter) };
+        FilteredDrive { filter, segments: [segment(1, first), segment(0, 1.0 - first)] }
     }
 }
 
@@ -128,6 +141,15 @@ impl FilteredDrive {
     /// Returns the filter.
     pub fn filter(&self) -> DriveFilter {
         self.filter
+    }
+
+    /// Returns the speeds of the present step, by its commands and those of the steps before, at their own times where these
+    /// are known.
+    pub fn speeds_of(&self, commands: &CommandHistory, pieces: &Pieces, robot: &Robot) -> StepSpeeds {
+        if pieces.is_empty() {
+            return self.speeds(commands, 0, robot);
+        }
+        self.speeds_in(&pieces.phases(commands, self.memory_steps(commands, robot)), 0, robot)
     }
 
     /// Returns the speeds of the step `steps_ago` before the present one. Before the oldest command of the history that
@@ -138,17 +160,91 @@ impl FilteredDrive {
         if self.filter.is_none() {
             return StepSpeeds { now: ago(present), before: ago(present + 1), drift_cm: 0.0 };
         }
-        let towards = |steps: usize| [ago(steps + 1), ago(steps)];
+        let (drive, before) = self.driven(&self.segments, |_, steps| ago(steps), present, robot, |_, _| ());
+        self.step_speeds(&drive, before, robot)
+    }
+
+    /// Returns the same where commands change within steps.
+    pub fn speeds_in(&self, phases: &Phases, steps_ago: usize, robot: &Robot) -> StepSpeeds {
+        let (drive, before) = self.driven_in(phases, steps_ago as f64, robot, |_, _| ());
+        self.step_speeds(&drive, before, robot)
+    }
+
+    /// Returns the pieces of the step `steps_ago` before the present one, which may be a fraction: their durations in steps,
+    /// and the mean speeds in them.
+    pub fn pieces(&self, phases: &Phases, steps_ago: f64, robot: &Robot) -> Vec<(f64, [f64; 2])> {
+        let mut pieces: Vec<(f64, [f64; 2])> = Vec::new();
+        self.driven_in(phases, steps_ago, robot, |duration, speeds| match pieces.last_mut() {
+            Some((held, last)) if *last == speeds => *held += duration,
+            _ => pieces.push((duration, speeds)),
+        });
+        pieces
+    }
+
+    /// Returns for how long before the present step commands matter to it, steps.
+    pub fn memory_steps(&self, commands: &CommandHistory, robot: &Robot) -> f64 {
+        self.filter.dead_time_steps.max(0.0) + self.reach_steps(commands, command_for(1.0, robot)) as f64
+    }
+
+    fn driven_in(
+        &self,
+        phases: &Phases,
+        steps_ago: f64,
+        robot: &Robot,
+        visit: impl FnMut(f64, [f64; 2]),
+    ) -> (Moving, [f64; 2]) {
+        let late_steps = self.filter.dead_time_steps.max(0.0) + steps_ago;
+        let segments = self.segments_in(phases, late_steps % 1.0);
+        let command = |phase: usize, steps: usize| phases.histories[phase][steps.min(HISTORY - 1)];
+        self.driven(&segments, command, late_steps as usize, robot, visit)
+    }
+
+    /// Returns the segments of a step whose commands act a fraction of a step late.
+    fn segments_in(&self, phases: &Phases, late_steps: f64) -> Vec<Segment> {
+        let mut begins: Vec<f64> = phases.begins_steps.iter().map(|begin| (begin + late_steps) % 1.0).collect();
+        begins.push(0.0);
+        begins.sort_by(f64::total_cmp);
+        begins.dedup();
+        let end = |i: usize| begins.get(i + 1).copied().unwrap_or(1.0);
+        let segment = |(i, begin): (usize, &f64)| {
+            let set = 0.5 * (begin + end(i)) - late_steps;
+            let ago = usize::from(set < 0.0);
+            Segment { phase: phases.at(set + ago as f64), ago, parts: Part::pair(end(i) - begin, &self.filter) }
+        };
+        begins.iter().enumerate().map(segment).collect()
+    }
+
+    /// Drives through the steps that matter. `command` returns that of a phase by its age in steps, `visit` receives the duration
+    /// of each piece of the present step and the mean speeds in it. Returns the drive after the present step, in which all that
+    /// it covered lies, and its speeds before it.
+    fn driven(
+        &self,
+        segments: &[Segment],
+        command: impl Fn(usize, usize) -> [f64; 2],
+        present: usize,
+        robot: &Robot,
+        mut visit: impl FnMut(f64, [f64; 2]),
+    ) -> (Moving, [f64; 2]) {
         let unit = command_for(1.0, robot);
-        let oldest = (present + self.reach_steps(commands, unit)).min(HISTORY - 1);
-        let mut drive = Moving::at(ago(oldest + 1), unit);
+        let commanded = (0..HISTORY).map(|steps| command(0, steps));
+        let oldest = (present + self.reach_of(commanded, unit)).min(HISTORY - 1);
+        let at_last = segments.last().map_or(0, |segment| segment.phase);
+        let mut drive = Moving::at(command(at_last, oldest + 1), unit);
         for steps in (present + 1..=oldest).rev() {
-            self.earlier.iter().zip(towards(steps)).for_each(|(part, towards)| drive.advance(part, towards));
+            for segment in segments {
+                drive.advance(&segment.parts[0], command(segment.phase, steps + segment.ago), |_, _| ());
+            }
         }
         let before = drive.speeds();
         drive.covered = [0.0; 2];
         drive.drift = 0.0;
-        self.present.iter().zip(towards(present)).for_each(|(part, towards)| drive.advance(part, towards));
+        for segment in segments {
+            drive.advance(&segment.parts[1], command(segment.phase, present + segment.ago), &mut visit);
+        }
+        (drive, before)
+    }
+
+    fn step_speeds(&self, drive: &Moving, before: [f64; 2], robot: &Robot) -> StepSpeeds {
         let [way, turn] = drive.covered;
         let per_command_cm = robot.full_speed_cm_s / 100.0 * robot.step_ms / 1000.0;
         let cm = self.filter.drift_factor * 2.0 * per_command_cm * per_command_cm / robot.track_cm;
@@ -158,6 +254,10 @@ impl FilteredDrive {
     /// Returns the number of steps before the present one that still move the robot; `unit` is the command for the reference
     /// speed.
     fn reach_steps(&self, commands: &CommandHistory, unit: f64) -> usize {
+        self.reach_of(commands.iter().copied(), unit)
+    }
+
+    fn reach_of(&self, commands: impl Iterator<Item = [f64; 2]>, unit: f64) -> usize {
         let per_step = match self.filter.most_change {
             None => f64::INFINITY,
             Some(MostChange::Wheel(change)) => unit * change,
@@ -165,7 +265,7 @@ impl FilteredDrive {
         };
         // The largest change is from the fastest command to its opposite.
         let limited = if per_step.is_finite() {
-            2.0 * commands.as_flattened().iter().fold(0.0, |most: f64, c| most.max(c.abs())) / per_step
+            2.0 * commands.flatten().fold(0.0, |most: f64, c| most.max(c.abs())) / per_step
         } else {
             0.0
         };
@@ -210,6 +310,13 @@ struct Moving {
 }
 
 impl Part {
+    /// Returns the part of earlier steps and that of the present one.
+    fn pair(duration: f64, filter: &DriveFilter) -> [Self; 2] {
+        let is_exact = filter.turn_lag_steps <= 0.0 && filter.most_change.is_none();
+        [if is_exact { 1.0 } else { PIECES_PER_STEP }, PIECES_PER_STEP]
+            .map(|pieces| Part::new(duration, pieces, filter))
+    }
+
     fn new(duration: f64, pieces_per_step: f64, filter: &DriveFilter) -> Self {
         let pieces = (pieces_per_step * duration).ceil().max(1.0);
         let duration = duration / pieces;
@@ -244,7 +351,7 @@ impl Moving {
         wheels([twist(self.wheels)[0], self.turn_rate])
     }
 
-    fn advance(&mut self, part: &Part, towards: [f64; 2]) {
+    fn advance(&mut self, part: &Part, towards: [f64; 2], mut visit: impl FnMut(f64, [f64; 2])) {
         for _ in 0..part.pieces {
             let begin = self.wheels;
             let end = [0, 1].map(|m| towards[m] + part.lag.missing * (begin[m] - towards[m]));
@@ -262,6 +369,7 @@ impl Moving {
             let [way, turn_rate] = twist(mean);
             let turn = turn_rate + part.turn_lag.mean_missing * (self.turn_rate - turn_rate);
             self.turn_rate = turn_rate + part.turn_lag.missing * (self.turn_rate - turn_rate);
+            visit(part.duration, wheels([way, turn]));
             let (way, turn) = (way * part.duration, turn * part.duration);
             self.drift += way * (self.covered[1] + 0.5 * turn);
             self.covered = [self.covered[0] + way, self.covered[1] + turn];
@@ -298,94 +406,4 @@ impl StepSpeeds {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use mindgap_foundations::geometry::Pose;
-    use mindgap_foundations::motion::Arc;
-
-    fn filter(dead_time_steps: f64, lag_steps: f64) -> DriveFilter {
-        DriveFilter { dead_time_steps, lag_steps, ..DriveFilter::default() }
-    }
-
-    /// Integrates the same filter in small steps, from the oldest command on. Returns mean and first speed, and the drift.
-    fn integrated(filter: &DriveFilter, commands: &CommandHistory, robot: &Robot) -> StepSpeeds {
-        const PARTS: usize = 5000;
-        let (part, unit) = (1.0 / PARTS as f64, command_for(1.0, robot));
-        let at = |time_steps: f64| commands[(-time_steps.floor()).clamp(0.0, (HISTORY - 1) as f64) as usize];
-        let nearer = |lag_steps: f64| if lag_steps > 0.0 { 1.0 - libm::exp(-part / lag_steps) } else { 1.0 };
-        let (mut speed, mut turn_rate) = (commands[HISTORY - 1], twist(commands[HISTORY - 1])[1]);
-        let (mut before, mut now, mut pose) = ([0.0; 2], [0.0; 2], Pose::new(0.0, 0.0, 0.0));
-        let moved = |speed: [f64; 2], duration_s: f64| {
-            let wheels_cm = speed.map(|c| c / 100.0 * robot.full_speed_cm_s * duration_s);
-            Arc { length_cm: 0.0, across_cm: 0.0, turn_rad: 0.0 }.with_wheels(wheels_cm, robot.track_cm).motion()
-        };
-        for i in 0..HISTORY * PARTS {
-            let time = (i as f64 + 0.5) * part - (HISTORY - 1) as f64;
-            if i == (HISTORY - 1) * PARTS {
-                before = wheels([twist(speed)[0], turn_rate]);
-            }
-            let towards = at(time - filter.dead_time_steps);
-            let end = [0, 1].map(|m| speed[m] + nearer(filter.lag_steps) * (towards[m] - speed[m]));
-            speed = match filter.most_change {
-                None => end,
-                Some(MostChange::Wheel(most)) => MostChange::Wheel(most * part).limited(speed, end, unit),
-                Some(MostChange::Twist(most)) => {
-                    MostChange::Twist(most.map(|most| most * part)).limited(speed, end, unit)
-                }
-            };
-            turn_rate += nearer(filter.turn_lag_steps) * (twist(speed)[1] - turn_rate);
-            let body = wheels([twist(speed)[0], turn_rate]);
-            if time > 0.0 {
-                now = [0, 1].map(|m| now[m] + body[m] * part);
-                pose = moved(body, robot.step_ms / 1000.0 * part).end(&pose);
-            }
-        }
-        let held = moved(now, robot.step_ms / 1000.0);
-        StepSpeeds { now, before, drift_cm: pose.position_cm.y - held.lateral }
-    }
-
-    /// Speeds agree to these commands, for exact forms and for those in pieces.
-    fn assert_like_integrated(filter: DriveFilter, within: f64) {
-        let robot = mindgap_built_in_robot::default_robot();
-        let commands: CommandHistory =
-            std::array::from_fn(|age| [libm::sin(age as f64) * 60.0, if age < 3 { 50.0 } else { -20.0 }]);
-        let (found, right) =
-            (FilteredDrive::from(filter).speeds(&commands, 0, &robot), integrated(&filter, &commands, &robot));
-        let near = found.inputs().iter().zip(right.inputs()).all(|(a, b)| (a - b).abs() < within);
-        assert!(near, "{filter:?}: {found:?} {right:?}");
-        // Of the sine of the heading the first power is taken.
-        assert!((found.drift_cm - right.drift_cm).abs() < 0.05 + 0.1 * right.drift_cm.abs(), "{found:?} {right:?}");
-    }
-
-    #[test]
-    fn dead_time_and_lag_are_exact() {
-        for (dead_time_steps, lag_steps) in [(0.0, 0.0), (0.3, 0.0), (2.0, 0.0), (0.0, 0.5), (0.7, 1.3), (2.5, 0.2)] {
-            assert_like_integrated(filter(dead_time_steps, lag_steps), 0.5);
-        }
-    }
-
-    #[test]
-    fn limits_and_lags_of_the_turn_are_integrated() {
-        let lagging = filter(0.4, 0.6);
-        for most_change in [MostChange::Wheel(0.3), MostChange::Twist([0.25, 0.1])] {
-            assert_like_integrated(DriveFilter { most_change: Some(most_change), ..DriveFilter::default() }, 2.0);
-            assert_like_integrated(DriveFilter { most_change: Some(most_change), ..lagging }, 2.0);
-        }
-        assert_like_integrated(DriveFilter { turn_lag_steps: 0.7, ..lagging }, 1.0);
-        assert_like_integrated(DriveFilter { turn_lag_steps: 0.7, ..DriveFilter::default() }, 1.0);
-    }
-
-    #[test]
-    fn without_dead_time_and_lag_commands_act_at_once() {
-        let robot = mindgap_built_in_robot::default_robot();
-        let commands: CommandHistory = std::array::from_fn(|age| [age as f64, -(age as f64)]);
-        for filter in [DriveFilter::default(), filter(-1.0, -0.5)] {
-            assert!(filter.is_none());
-            for steps_ago in [0, 3] {
-                let StepSpeeds { now, before, drift_cm } =
-                    FilteredDrive::from(filter).speeds(&commands, steps_ago, &robot);
-                assert_eq!(([now, before], drift_cm), ([commands[steps_ago], commands[steps_ago + 1]], 0.0));
-            }
-        }
-    }
-}
+mod tests;

@@ -13,7 +13,6 @@ use serde_json::{Value, json};
 
 use super::scales::{self, reference_cm_s};
 use mindgap_foundations::statistics::maximise::Bounds;
-use mindgap_foundations::statistics::rounding::three_digits;
 use mindgap_logs::Robot;
 
 /// A number that is fitted.
@@ -94,6 +93,13 @@ pub enum Setting {
     Side(Side),
     /// What a limit acts on.
     ActsOn(ActsOn),
+}
+
+impl Setting {
+    /// Returns the number, if it is one.
+    pub fn number(self) -> Option<f64> {
+        if let Setting::Number(number) = self { Some(number) } else { None }
+    }
 }
 
 /// A side of the robot.
@@ -285,38 +291,58 @@ impl Parameter {
         Some(marked.unwrap_or(value)).filter(|value| self.allows(*value))
     }
 
-    /// Returns its settings at a value, rounded for people; none of a parameter that describes the form.
-    pub(super) fn reported(&self, value: f64, robot: &Robot) -> Vec<(String, Value)> {
-        let rounded = |setting: Setting| match (self.report, setting) {
-            (Report::Direction, Setting::Number(deg)) => json!((deg * 10.0).round() / 10.0),
-            (_, Setting::Number(number)) => json!(three_digits(number)),
-            (_, side) => json!(side),
-        };
-        let is_reported = !matches!(self.report, Report::Hidden);
-        let settings = self.settings(value, robot).into_iter().filter(|_| is_reported);
-        settings.map(|(name, setting)| (name.into(), rounded(setting))).collect()
+    /// Returns the number that is reported at a value; `None` for a parameter that describes the form, or a direction.
+    pub fn number(&self, value: f64, robot: &Robot) -> Option<f64> {
+        let measures = !matches!(self.report, Report::Hidden | Report::Direction);
+        let settings = self.settings(value, robot).into_iter().filter(|_| measures);
+        settings.filter_map(|(_, setting)| setting.number()).next()
     }
 
-    /// Returns the interval of the reported number, for this interval of the value.
-    pub(super) fn reported_between(&self, value: f64, [low, high]: [f64; 2], robot: &Robot) -> Vec<(String, Value)> {
-        let numbers = |value: f64| {
-            let reported = self.reported(value, robot).into_iter();
-            reported.filter_map(|(name, number)| Some((name, number.as_f64()?))).next()
-        };
-        let Some((name, number)) = numbers(value) else { return vec![] };
+    /// Returns how far a reported number lies from neutral. A speed limit departs from full speed, a ramp from none at all, which is
+    /// infinitely steep, by its own value, and a direction by one radian.
+    pub fn departure(&self, number: f64, robot: &Robot) -> f64 {
+        let neutral = self.number(self.nominal, robot);
+        match self.report {
+            Report::RateLimit(_) | Report::TurnRateLimit => number.abs(),
+            Report::SpeedLimit(_) | Report::Command => {
+                neutral.map_or(number, |neutral| number - neutral.min(FULL_COMMAND)).abs()
+            }
+            _ => neutral.map_or(1f64.to_degrees(), |neutral| (number - neutral).abs()),
+        }
+    }
+
+    /// Returns its settings at a value; none of a parameter that describes the form.
+    pub(super) fn reported(&self, value: f64, robot: &Robot) -> Vec<(String, Value)> {
+        let is_reported = !matches!(self.report, Report::Hidden);
+        let settings = self.settings(value, robot).into_iter().filter(|_| is_reported);
+        settings.map(|(name, setting)| (name.into(), json!(setting))).collect()
+    }
+
+    /// Returns the name of the reported number, its value, and its interval for this interval of the value; `None` for a
+    /// parameter that describes the form.
+    pub fn reported_between(
+        &self,
+        value: f64,
+        [low, high]: [f64; 2],
+        robot: &Robot,
+    ) -> Option<(&'static str, f64, [f64; 2])> {
+        let name = self.setting().0;
         if let Report::Direction = self.report {
             // Beyond half a turn where the direction is near it: 179 (176 to 182).
-            let ends = [low, high].map(|end| ((number + end - value) * 10.0).round() / 10.0);
-            return vec![(name, json!(ends))];
+            let number = self.settings(value, robot).into_iter().find_map(|(_, setting)| setting.number())?;
+            return Some((name, number, [low, high].map(|end| number + end - value)));
         }
+        let number = self.number(value, robot)?;
         // A magnitude is least where nothing is changed.
         let nominal = (low < self.nominal && self.nominal < high).then_some(self.nominal);
-        let reached = || [low, high].into_iter().chain(nominal).filter_map(|value| Some(numbers(value)?.1));
+        let reached = || [low, high].into_iter().chain(nominal).filter_map(|value| self.number(value, robot));
         let ends = [reached().fold(f64::INFINITY, f64::min), reached().fold(f64::NEG_INFINITY, f64::max)];
-        vec![(name, json!(ends))]
+        Some((name, number, ends))
     }
 }
 
+/// The command of full speed.
+const FULL_COMMAND: f64 = 100.0;
 /// Fewer steps than this are none.
 const NO_STEPS: f64 = 1e-13;
 /// Name of the setting that says which side of the robot is meant.
@@ -421,8 +447,8 @@ mod tests {
         let one = |name: &str, value: f64| vec![(String::from(name), json!(value))];
         let side = |side: &str, name: &str, value: f64| vec![("side".into(), json!(side)), (name.into(), json!(value))];
         assert_eq!(reported(Report::Hidden, 3.0), []);
-        assert_eq!(reported(Report::Value, 2.7459), one("cm", 2.75));
-        assert_eq!(reported(Report::Direction, 270.04), one("cm", -90.0));
+        assert_eq!(reported(Report::Value, 2.7459), one("cm", 2.7459));
+        assert_eq!(reported(Report::Direction, 270.0), one("cm", -90.0));
         assert_eq!(reported(Report::SideAndLoss, 0.25), side("left", "loss", 0.25));
         assert_eq!(reported(Report::SideAndLoss, -0.25), side("right", "loss", 0.25));
         assert_eq!(reported(Report::SideAndFactor, -0.25), side("right", "factor", 0.75));
@@ -437,14 +463,15 @@ mod tests {
     #[test]
     fn intervals_contain_their_value() {
         let robot = Robot { step_ms: 400.0, full_speed_cm_s: 50.0, ..mindgap_built_in_robot::default_robot() };
-        let between = |report, value, ends| -> Vec<(String, Value)> {
+        let between = |report, value, ends| {
             let parameter = Parameter { nominal: 0.0, ..LENGTH.report(report) };
-            parameter.reported_between(value, ends, &robot)
+            parameter.reported_between(value, ends, &robot).map(|(name, _, ends)| (name, ends))
         };
-        let one = |name: &str, ends: [f64; 2]| vec![(String::from(name), json!(ends))];
-        assert_eq!(between(Report::Hidden, 3.0, [2.0, 4.0]), []);
+        let one = |name: &'static str, ends: [f64; 2]| Some((name, ends));
+        assert_eq!(between(Report::Hidden, 3.0, [2.0, 4.0]), None);
         assert_eq!(between(Report::Value, 3.0, [2.0, 4.0]), one("cm", [2.0, 4.0]));
-        assert_eq!(between(Report::OddsFactor, 0.0, [-1.0, 1.0]), one("factor", [0.368, 2.72]));
+        let odds = [libm::exp(-1.0), libm::exp(1.0)];
+        assert_eq!(between(Report::OddsFactor, 0.0, [-1.0, 1.0]), one("factor", odds));
         assert_eq!(between(Report::SideAndLoss, 0.25, [0.125, 0.375]), one("loss", [0.125, 0.375]));
         assert_eq!(between(Report::SideAndLoss, -0.002, [-0.008, 0.004]), one("loss", [0.0, 0.008]), "either side");
         assert_eq!(between(Report::SideAndFactor, -0.25, [-0.5, 0.125]), one("factor", [0.5, 1.0]));

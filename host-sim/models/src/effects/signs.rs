@@ -51,7 +51,7 @@ const SIGNS: &[Signs] = &[
     Signs {
         effect: "latency",
         in_logs: "Residuals appear only after a change of the command, and the motion is that of the command before.",
-        imitated_by: &["inertia"],
+        imitated_by: &["inertia", "tracker_delay"],
     },
     Signs {
         effect: "inertia",
@@ -107,6 +107,11 @@ const SIGNS: &[Signs] = &[
         effect: "sonar_yaw",
         in_logs: "Readings belong to a direction to one side of the heading: too long or too short as a wall slants.",
         imitated_by: &["sonar_beam", "tracker_rotation"],
+    },
+    Signs {
+        effect: "sonar_pitch",
+        in_logs: "Beyond one distance readings are missing, or all are of that distance; nearer ones agree.",
+        imitated_by: &["sonar_absorption", "sonar_ghost"],
     },
     Signs {
         effect: "sonar_beam",
@@ -172,6 +177,16 @@ const SIGNS: &[Signs] = &[
         effect: "compass_disturbance",
         in_logs: "Turns are off depending on the heading; the errors cancel over a full turn.",
         imitated_by: &["tracker_rotation", "track_width"],
+    },
+    Signs {
+        effect: "heading_lag",
+        in_logs: "In turns the robot moves to the inside of its heading; after a change of turn rate the heading moves on over several steps.",
+        imitated_by: &["turn_lag", "marker_offset"],
+    },
+    Signs {
+        effect: "tracker_delay",
+        in_logs: "The motion is that of the command before, and readings are those of a place ahead of the pose.",
+        imitated_by: &["latency", "sonar_lag"],
     },
 ];
 

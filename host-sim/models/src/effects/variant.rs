@@ -78,6 +78,8 @@ pub enum Hook {
     Filter(&'static (dyn Fn(&[f64], &mut DriveFilter) + Sync)),
     /// Delays the motion.
     Delay(&'static (dyn Fn(&[f64]) -> Late + Sync)),
+    /// A first-order lag of the heading that the tracker sees, steps.
+    HeadingLag(&'static (dyn Fn(&[f64]) -> f64 + Sync)),
     /// To the motion that the tracker sees, by this and commands alone.
     Motion(&'static MotionHook),
     /// The same, by where and when too.
@@ -110,6 +112,14 @@ pub struct SensorState {
     pub perturbation: Perturbation,
 }
 
+impl Effect {
+    /// Returns whether it may sit there; a user's own effect may, if it changes the same.
+    pub fn may_sit_in(&self, place: Place) -> bool {
+        let senses_only = || self.variants.iter().all(|variant| variant.senses() && !variant.moves());
+        self.place.map_or_else(|| senses_only() == (place == Place::Sensor), |own| own == place)
+    }
+}
+
 impl Variant {
     /// Returns the values at which it changes nothing.
     pub fn nominal(&self) -> Vec<f64> {
@@ -139,15 +149,9 @@ impl Variant {
         (count == named).then_some(values)
     }
 
-    /// Returns the parameters as the table of docs/reference/effects.md names them, rounded for people.
+    /// Returns the parameters as the table of docs/reference/effects.md names them.
     pub fn reported(&self, values: &[f64], robot: &Robot) -> Map<String, Value> {
         self.parameters.iter().zip(values).flat_map(|(p, value)| p.reported(*value, robot)).collect()
-    }
-
-    /// Returns the intervals of the reported numbers, for these intervals of the values.
-    pub fn reported_between(&self, values: &[f64], ends: &[[f64; 2]], robot: &Robot) -> Map<String, Value> {
-        let parameters = self.parameters.iter().zip(values).zip(ends);
-        parameters.flat_map(|((p, value), ends)| p.reported_between(*value, *ends, robot)).collect()
     }
 
     /// Returns whether it changes the motion or how that is tracked.
@@ -205,6 +209,7 @@ impl Hook {
             | Hook::DeadTime(_)
             | Hook::Filter(_)
             | Hook::Delay(_)
+            | Hook::HeadingLag(_)
             | Hook::Motion(_)
             | Hook::MotionHere(_) => None,
         }

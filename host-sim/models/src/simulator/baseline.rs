@@ -2,14 +2,16 @@
 
 use std::sync::Arc;
 
+use crate::effects::Candidate;
 use crate::effects::applied::AppliedEffect;
 use crate::effects::chain::EffectChain;
 use crate::effects::drive_filter::DriveFilter;
+use crate::effects::witness::{OnCounters, on_counters, on_gyro};
 use crate::simulator::ensemble::command_scale::Percent;
 use crate::simulator::ensemble::{CommandScale, HeldMotion, Member, Posterior};
 use crate::simulator::motion::MotionNetworks;
-use crate::simulator::nominal::MotionBias;
 use crate::simulator::nominal::motion_bias::Precision;
+use crate::simulator::nominal::{MotionBias, WheelLaw};
 use crate::simulator::{Learned, Simulator};
 use crate::sonar::SensorLaw;
 use crate::sonar::familiar::FamiliarPoses;
@@ -45,6 +47,8 @@ pub enum MotionModel<'s> {
         networks: MotionNetworks<'s>,
         /// Their bias and noise.
         reference: &'s MotionBias,
+        /// How far commands turn the wheels, if rotation counters were logged.
+        wheels: Option<&'s WheelLaw>,
         /// Least and largest command that they know.
         commands: [f64; 2],
         /// What the training logs leave open about the robot; `member` is its mean.
@@ -72,11 +76,13 @@ impl<'s> Baseline<'s> {
         let reference = simulator.reference.as_ref().ok_or_else(|| {
             Error::new("the simulator file does not say how its training logs scattered: train it again")
         })?;
+        let learned_wheels = reference.wheels.as_ref();
         let drive = simulator.motion_networks().zip(reference.motion.as_ref());
         let motion = drive.map(|(networks, reference)| MotionModel::Learned {
             filter: simulator.filter,
             networks,
             reference,
+            wheels: learned_wheels,
             commands: simulator.commands.map(f64::from),
             open: None,
             member: None,
@@ -92,7 +98,7 @@ impl<'s> Baseline<'s> {
             sonar: simulator.sensor_law(),
             place_bound: reference.place_bound,
             familiar: reference.familiar.as_ref(),
-            applied: simulator.added.clone(),
+            applied: simulator.added.iter().filter(|added| added.sensor.is_none()).cloned().collect(),
         })
     }
 
@@ -121,6 +127,25 @@ impl<'s> Baseline<'s> {
         EffectChain::of(filter, &[self.applied.as_slice(), further].concat(), &self.robot)
     }
 
+    /// Returns the chain up to the rims, as rotation counters see it.
+    pub fn chain_to_the_rims(&self) -> EffectChain {
+        let filter = self.motion.as_ref().map_or_else(DriveFilter::default, MotionModel::filter);
+        self.chain_of(filter.up_to_the_rims(), |added| on_counters(added) != OnCounters::Hidden)
+    }
+
+    /// Returns the chain up to the body, as a gyro sees it.
+    pub fn chain_to_the_body(&self) -> EffectChain {
+        let filter = self.motion.as_ref().map_or_else(DriveFilter::default, MotionModel::filter);
+        self.chain_of(filter, on_gyro)
+    }
+
+    /// Returns a filter and those of the effects that were added before which are seen.
+    fn chain_of(&self, filter: DriveFilter, is_seen: impl Fn(&Candidate) -> bool) -> EffectChain {
+        let resolved = |added: &&AppliedEffect| added.resolve(&self.robot).is_ok_and(|(added, _)| is_seen(&added));
+        let seen: Vec<AppliedEffect> = self.applied.iter().filter(resolved).cloned().collect();
+        EffectChain::of(filter, &seen, &self.robot)
+    }
+
     /// Returns the number of steps that the motion was learned from, if known; none for the textbook.
     pub fn trained_on(&self) -> Option<f64> {
         let MotionModel::Learned { reference, .. } = self.motion.as_ref()? else { return None };
@@ -140,6 +165,7 @@ impl MotionModel<'_> {
     /// Predicts a step for the commands now and before, as they come out of its filter.
     pub fn step(&self, now: [f64; 2], before: [f64; 2]) -> Motion<f64> {
         match self {
+            MotionModel::Learned { .. } if self.rests(now) && self.rests(before) => Motion::ZERO,
             MotionModel::Learned { networks, reference, commands, member, .. } => {
                 let [now, before] = [now, before].map(|command| command.map(|c| c.clamp(commands[0], commands[1])));
                 // For a held command this is the whole prediction, and the networks need not be evaluated.
@@ -151,7 +177,7 @@ impl MotionModel<'_> {
                 learned + (reference.correction(&speeds) + self.beyond(now))
             }
             MotionModel::Kinematic { robot, .. } => {
-                let way_cm = now.map(|c| c / 100.0 * robot.full_speed_cm_s * robot.step_ms / 1000.0);
+                let way_cm = rolled_cm(robot, now);
                 let turn = (way_cm[1] - way_cm[0]) / robot.track_cm;
                 let arc_cm = 0.5 * (way_cm[0] + way_cm[1]);
                 // The chord of an arc.
@@ -159,6 +185,40 @@ impl MotionModel<'_> {
                 let chord_cm = if half.abs() < 1e-9 { arc_cm } else { arc_cm * libm::sin(half) / half };
                 Motion { forward: chord_cm * libm::cos(half), lateral: chord_cm * libm::sin(half), turn }
             }
+        }
+    }
+
+    /// Predicts how far the rims of the left and the right wheel turn in a step, cm, for the commands now and before as they
+    /// come out of the filter [up to the rims](DriveFilter::up_to_the_rims); `None` where that was not learned.
+    pub fn wheels_cm(&self, now: [f64; 2], before: [f64; 2]) -> Option<[f64; 2]> {
+        match self {
+            MotionModel::Learned { wheels, commands, .. } => {
+                let [now, before] = [now, before].map(|command| command.map(|c| c.clamp(commands[0], commands[1])));
+                wheels.map(|law| law.wheels_cm(now, before))
+            }
+            MotionModel::Kinematic { robot, .. } => Some(rolled_cm(robot, now)),
+        }
+    }
+
+    /// Returns whether it knows how far the wheels turn.
+    pub fn knows_wheels(&self) -> bool {
+        !matches!(self, MotionModel::Learned { wheels: None, .. })
+    }
+
+    /// Returns the standard deviations of the left and the right rotation counter where nothing is different, cm per step;
+    /// `None` where that is not known.
+    pub fn counter_scatter_cm(&self) -> Option<[f64; 2]> {
+        match self {
+            MotionModel::Learned { wheels, .. } => wheels.map(|law| law.scatter_cm),
+            MotionModel::Kinematic { .. } => None,
+        }
+    }
+
+    /// Returns whether a command of zero is held, under which every robot rests.
+    fn rests(&self, command: [f64; 2]) -> bool {
+        match self {
+            MotionModel::Learned { networks, .. } => networks.scale().is_rest(command),
+            MotionModel::Kinematic { .. } => command == [0.0; 2],
         }
     }
 
@@ -203,6 +263,9 @@ impl MotionModel<'_> {
 
     /// Returns the mean square error for a held command; that of the turn in squared degrees.
     fn held_error(&self, open: &Posterior, command: [f64; 2]) -> Motion<f64> {
+        if self.rests(command) {
+            return Motion::ZERO;
+        }
         let predicted = self.step(command, command).turn_in_degrees();
         open.motion(command).zip_with(predicted, |[mean, deviation], predicted| {
             (mean - predicted) * (mean - predicted) + deviation * deviation
@@ -224,6 +287,11 @@ impl MotionModel<'_> {
             MotionModel::Kinematic { .. } => Motion::splat(1.0),
         }
     }
+}
+
+/// Returns how far wheels roll in a step by a textbook, cm.
+fn rolled_cm(robot: &Robot, command: [f64; 2]) -> [f64; 2] {
+    command.map(|c| c / 100.0 * robot.full_speed_cm_s * robot.step_ms / 1000.0)
 }
 
 fn process_noise_fraction(learned: &Option<Learned<4>>) -> f64 {

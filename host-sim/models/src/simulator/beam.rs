@@ -113,7 +113,7 @@ impl Beam {
     }
 
     /// The same as effects leave it after an echo and after none, if these differ only in the probabilities of outcomes, and
-    /// what rays lose by distance and incidence keeps its form.
+    /// what rays lose by distance and incidence keeps its form. A beam that meets the floor does not.
     pub fn changed(reference: &SonarModel, [after_echo, after_none]: &[SensorState; 2]) -> Option<Self> {
         let Perturbation { p_dropout, p_ghost_given_echo, p_ghost_given_none, p_short, p_long, .. } =
             after_echo.perturbation;
@@ -132,7 +132,8 @@ impl Beam {
         };
         let thresholds = |after: &SensorState| Thresholds::both(reference, &after.perturbation);
         let matters = after_none != after_echo;
-        let is_known = otherwise == *after_echo && !after_echo.perturbation.shapes_losses();
+        let keeps_rays = !after_echo.perturbation.shapes_losses() && !after_echo.perturbation.meets_floor();
+        let is_known = otherwise == *after_echo && keeps_rays;
         is_known.then(|| Beam {
             thresholds_after_none: matters.then(|| thresholds(after_none)),
             ..Self::of(reference, after_echo)

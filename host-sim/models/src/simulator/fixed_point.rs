@@ -34,7 +34,7 @@ pub struct FixedNetworks {
     pub lateral: Quantised<4>,
     /// Probability that the sensor produces a value.
     pub echo_probability: Quantised<2>,
-    /// The value it then produces, cm.
+    /// The reading if the sensor produces one, cm.
     pub echo_value: Quantised<2>,
 }
 

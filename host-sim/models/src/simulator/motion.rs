@@ -108,7 +108,15 @@ impl<'s> MotionNetworks<'s> {
 
     /// Predicts a step.
     pub fn step(&self, speeds: Speeds<f32>) -> PredictedStep {
-        PredictedStep { motion: self.evaluate(speeds), cells: self.cells(&speeds) }
+        let motion = if self.rests(&speeds) { Motion::splat(0.0) } else { self.evaluate(speeds) };
+        PredictedStep { motion, cells: self.cells(&speeds) }
+    }
+
+    /// Returns whether a robot stands still: its commands are and were zero. Logs hardly show it, since they hold driven robots,
+    /// and networks do not know it. What is left of earlier commands behind a filter counts as zero below half a percent.
+    pub fn rests(&self, speeds: &Speeds<f32>) -> bool {
+        let [left, right, left_before, right_before] = speeds.map(f64::from);
+        self.scale.is_rest([left, right]) && self.scale.is_rest([left_before, right_before])
     }
 
     /// Returns logged minus predicted motion of a step.
@@ -138,9 +146,9 @@ impl<'s> MotionNetworks<'s> {
             steps[TUPLES + tuple] = speeds(controller, tuple, false);
         }
         let columns = Arch::new().dispatch(SideBySide { networks: self, steps: &steps });
-        let step = |i: usize| PredictedStep {
-            motion: columns.each_ref().map(|column| column[i]),
-            cells: self.cells(&steps[i]),
+        let step = |i: usize| {
+            let motion = columns.each_ref().map(|column| if self.rests(&steps[i]) { 0.0 } else { column[i] });
+            PredictedStep { motion, cells: self.cells(&steps[i]) }
         };
         let mut table = MotionTable {
             first: std::array::from_fn(step),
@@ -150,11 +158,18 @@ impl<'s> MotionNetworks<'s> {
             transients: None,
         };
         if let Some(member) = self.member {
-            for (tuple, first) in steps[..TUPLES].iter().enumerate() {
+            for tuple in 0..TUPLES {
+                let (first, steady) = (&steps[tuple], &steps[TUPLES + tuple]);
                 let command = [first[0], first[1]].map(f64::from);
                 let (does, trained) = (member.motion(command), member.trained(command));
-                table.add(tuple, single(does - self.motion(command)), first_step(member, first));
-                table.bias[tuple] = single(does - trained);
+                let bias = single(does - self.motion(command));
+                if !self.rests(first) {
+                    table.first[tuple] = table.first[tuple].plus(bias).plus(first_step(member, first));
+                }
+                if !self.rests(steady) {
+                    table.steady[tuple] = table.steady[tuple].plus(bias);
+                    table.bias[tuple] = single(does - trained);
+                }
                 let scatter = member.scatter(command);
                 let scatter = Motion { turn: scatter.turn.map(f64::to_radians), ..scatter };
                 table.scatter[tuple] = scatter.map(|of| of.map(|v| v as f32));
@@ -166,7 +181,8 @@ impl<'s> MotionNetworks<'s> {
     /// Predicts a step as training knew it: by the networks, and what their logs add.
     pub fn trained_step(&self, speeds: Speeds<f32>) -> PredictedStep {
         let (step, command) = (self.step(speeds), [speeds[0], speeds[1]].map(f64::from));
-        self.member.map_or(step, |member| step.plus(single(member.trained(command) - self.motion(command))))
+        let member = self.member.filter(|_| !self.rests(&speeds));
+        member.map_or(step, |member| step.plus(single(member.trained(command) - self.motion(command))))
     }
 
     fn cells(&self, speeds: &Speeds<f32>) -> Motion<usize> {
@@ -210,11 +226,6 @@ impl MotionTable {
     /// Returns the predictions that include added effects, before the bias, where they are known ahead.
     pub(super) fn transients(&self) -> Option<&Transients> {
         self.transients.as_deref()
-    }
-
-    fn add(&mut self, tuple: usize, bias: Motion<f32>, first_step: Motion<f32>) {
-        self.steady[tuple] = self.steady[tuple].plus(bias);
-        self.first[tuple] = self.first[tuple].plus(bias).plus(first_step);
     }
 }
 

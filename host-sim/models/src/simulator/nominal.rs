@@ -4,6 +4,7 @@
 //! from the same logs, and states the scatter that remains: only what exceeds it is a gap.
 
 pub mod motion_bias;
+pub mod wheel_law;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -11,21 +12,25 @@ use serde::{Deserialize, Serialize};
 use crate::sonar::familiar::FamiliarPoses;
 use crate::sonar::{FirstEchoLaw, SonarModel};
 pub use motion_bias::MotionBias;
+pub use wheel_law::WheelLaw;
 
 /// What is normal, as far as the training logs show.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct NominalModel {
-    /// Of the motion, if the logs had poses.
+    /// Model of the motion, if the logs had poses.
     pub motion: Option<MotionBias>,
-    /// Of the sonar as a beam, if the logs had echoes.
+    /// Model of the wheels, if the logs had rotation counters.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub wheels: Option<WheelLaw>,
+    /// Beam model of the sonar, if the logs had echoes.
     pub sonar: Option<SonarModel>,
-    /// Of the sonar by the first-echo law, with poses as logged, if that predicts readings better than the beam.
+    /// The first-echo law of the sonar, with poses as logged, if it predicts readings better than the beam.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub first_echo: Option<FirstEchoLaw>,
-    /// Share of the chance in its echo rate and in its readings that belongs to the place.
+    /// Share of the variance of its echo rate and of its readings that belongs to the place.
     #[serde(default)]
     pub place_bound: [f64; 2],
-    /// What belongs to single poses, where readings came from the same ones again and again.
+    /// Errors that belong to single poses, if many readings came from the same poses.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub familiar: Option<FamiliarPoses>,
 }

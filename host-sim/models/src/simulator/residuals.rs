@@ -23,7 +23,7 @@ pub struct ResidualQuantiles {
     /// axis.
     #[serde(rename = "residuals")]
     pub quantiles: Vec<Vec<f32>>,
-    /// What of a residual a simulated robot has, one entry a cell.
+    /// Share of a residual that a simulated robot has, one entry per cell.
     #[serde(rename = "shares")]
     pub components: Vec<VarianceComponents>,
 }
@@ -50,7 +50,7 @@ pub struct ResidualNoise {
 pub struct ConstantReading {
     /// The reading, cm.
     pub value_cm: f32,
-    /// The chance that a reading is this one.
+    /// Probability that a reading is this one.
     pub probability: f32,
 }
 

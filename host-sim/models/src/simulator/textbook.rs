@@ -65,6 +65,7 @@ pub fn simulator(baseline: &Baseline, scatter: Motion<f64>) -> Result<Simulator>
         schema: SCHEMA,
         origin: Origin { version: env!("CARGO_PKG_VERSION").into(), trainer: "textbook".into(), seed: 0, runs: 0 },
         robot: *robot,
+        sensor: None,
         commands: [-FULL, FULL],
         filter: DriveFilter::default(),
         turn: learned(&turn_deg, Axis::Turn)?,
@@ -75,6 +76,7 @@ pub fn simulator(baseline: &Baseline, scatter: Motion<f64>) -> Result<Simulator>
         echo_value: range_cm
             .map(|[near_cm, far_cm]| Learned { network: distance(near_cm, far_cm), residuals: residuals(0.0, far_cm) }),
         constant_reading: None,
+        further: Vec::new(),
         reference: Some(NominalModel {
             motion: Some(MotionBias {
                 scale: CommandScale::PERCENT,
@@ -82,6 +84,7 @@ pub fn simulator(baseline: &Baseline, scatter: Motion<f64>) -> Result<Simulator>
                 scatter,
                 precision: None,
             }),
+            wheels: None,
             sonar,
             first_echo: first_echo.clone(),
             place_bound: baseline.place_bound,

@@ -88,7 +88,7 @@ pub struct FirstEchoLaw {
     pub ghost_cm: f64,
     /// Probability of a random answer, as often none as a reading.
     pub p_stray: f64,
-    /// Least and largest reading, cm.
+    /// Smallest and largest reading, cm.
     pub range_cm: [f64; 2],
 }
 

@@ -42,7 +42,7 @@ pub struct SonarModel {
     pub p_dropout: f64,
     /// Width of the beam relative to that of a usual sensor.
     pub fan_width: f64,
-    /// Least and largest reading, cm.
+    /// Smallest and largest reading, cm.
     pub range_cm: [f64; 2],
 }
 

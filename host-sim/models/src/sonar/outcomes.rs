@@ -6,6 +6,9 @@ use super::model::{CONSTANT_SCATTER_CM, P_RAND, SonarModel};
 use super::perturbation::{Perturbation, ROUNDED_BY_CM};
 use mindgap_foundations::statistics::student;
 
+/// Scatter of the floor's echo as a fraction of its distance: it comes from a patch and not from a line.
+const FLOOR_SCATTER: f64 = 0.03;
+
 /// Probabilities of all outcomes of a reading. They add up to one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outcomes {
@@ -155,7 +158,7 @@ impl Outcomes {
         let others = others.map(|(source, probability, distribution)| Component { source, probability, distribution });
         let components = hits.chain(others).collect();
         let outcomes = Outcomes { none: total(|w| w.none), components, range_cm: model.range_cm };
-        outcomes.without_hits_led_beyond_range(perturbation)
+        outcomes.without_hits_led_beyond_range(perturbation).above_floor(perturbation, reach)
     }
 
     /// Returns the outcomes with the faults of a perturbation, which replace other outcomes: the ghost, then a short
@@ -196,6 +199,34 @@ impl Outcomes {
                 *hit = within;
             }
         }
+        self
+    }
+
+    /// Returns the outcomes of a beam that meets the floor: of what is beyond it nothing comes back, and where nothing stands before
+    /// it the floor itself may. `reach_cm` is the distance along the axis.
+    pub(super) fn above_floor(mut self, change: &Perturbation, reach_cm: f64) -> Self {
+        if !change.meets_floor() {
+            return self;
+        }
+        let bare = change.behind_floor(reach_cm);
+        let mut silent = self.none * bare;
+        for component in &mut self.components {
+            let lost = match (component.source, component.distribution) {
+                (Source::Hit, Distribution::Student { middle_cm, .. } | Distribution::Within { middle_cm, .. }) => {
+                    change.behind_floor(middle_cm)
+                }
+                (Source::Long, _) => bare,
+                _ => 0.0,
+            };
+            silent += lost * component.probability;
+            self.none += lost * component.probability;
+            component.probability *= 1.0 - lost;
+        }
+        let probability = change.p_floor * silent;
+        self.none -= probability;
+        let scale_cm = libm::hypot(CONSTANT_SCATTER_CM, FLOOR_SCATTER * change.floor_cm);
+        let distribution = Distribution::Student { middle_cm: change.floor_cm, scale_cm };
+        self.components.push(Component { source: Source::Hit, probability, distribution });
         self
     }
 

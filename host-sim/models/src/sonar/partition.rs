@@ -67,6 +67,8 @@ pub const PERTURBED: Perturbation = Perturbation {
     p_short: 0.05,
     p_long: 0.06,
     p_long_given_none: 0.05,
+    floor_cm: f64::INFINITY,
+    p_floor: 0.0,
 };
 
 /// Returns a room with an obstacle, and the obstacle alone, where a fan may hit nothing.

@@ -1,8 +1,12 @@
 //! Differences of a sensor from its model.
 
+use mindgap_foundations::statistics::summary::logistic;
+
 /// i₀ and f of the first-echo law's loss by incidence, the medians over eleven sensors.
 const USUAL_SPECULAR_DEG: f64 = 15.0;
 const USUAL_OBLIQUE_LOSS: f64 = 10.7;
+/// Width of the floor's edge as a fraction of its distance: a beam has some height.
+const FLOOR_EDGE: f64 = 0.05;
 /// Readings that exceed the range by no more than this are still reported, since sensors report whole centimetres, cm.
 pub const ROUNDED_BY_CM: f64 = 0.5;
 
@@ -43,6 +47,10 @@ pub struct Perturbation {
     pub p_long: f64,
     /// Probability of the same in place of none.
     pub p_long_given_none: f64,
+    /// Distance at which the beam meets the floor, cm; infinite where it does not.
+    pub floor_cm: f64,
+    /// Probability that the floor returns an echo where nothing before it does.
+    pub p_floor: f64,
 }
 
 impl Perturbation {
@@ -59,6 +67,16 @@ impl Perturbation {
     /// Returns whether the loss of echoes is not linear in distance and incidence.
     pub fn shapes_losses(&self) -> bool {
         self.spreading != 0.0 || self.mirroring != 0.0
+    }
+
+    /// Returns the fraction of echoes from this distance that the floor keeps from coming back.
+    pub fn behind_floor(&self, distance_cm: f64) -> f64 {
+        logistic((distance_cm / self.floor_cm - 1.0) / FLOOR_EDGE)
+    }
+
+    /// Returns whether the beam meets the floor.
+    pub fn meets_floor(&self) -> bool {
+        self.floor_cm.is_finite()
     }
 
     /// Returns the reading of the perturbed sensor where the model reads `echo_cm`.
@@ -105,6 +123,8 @@ impl Perturbation {
         p_short: 0.0,
         p_long: 0.0,
         p_long_given_none: 0.0,
+        floor_cm: f64::INFINITY,
+        p_floor: 0.0,
     };
 }
 

@@ -1,7 +1,7 @@
 use rand::RngExt;
 
 use super::fan::{RAYS, fan_at};
-use super::outcomes::{Outcomes, Source};
+use super::outcomes::{Distribution, Outcomes, Source};
 use super::partition::{PERTURBED, Partition, SENSORS, assert_follow, probability_between, scenes, sensors};
 use super::{MixingWeights, Perturbation, SonarModel};
 use mindgap_foundations::random::generator;
@@ -167,4 +167,25 @@ fn hit_without_scatter_is_its_centre() {
     let hits = draws.filter(|cm| (cm - mean_cm).abs() < 1e-9).count();
     let expected: f64 = outcomes.components.iter().filter(|c| c.source == Source::Hit).map(|c| c.probability).sum();
     assert!((hits as f64 / 1000.0 - expected).abs() < 0.02, "{hits} {expected}");
+}
+
+#[test]
+fn of_what_is_beyond_the_floor_almost_nothing_is_heard() {
+    let floor = Perturbation { floor_cm: 60.0, p_floor: 0.4, ..Perturbation::NONE };
+    let mut floor_heard: f64 = 0.0;
+    for pose in sensors() {
+        let fan = fan_at(&scenes()[0].sides(), &pose, SENSORS[0].fan_width);
+        let [level, pitched] = [Perturbation::NONE, floor].map(|change| SENSORS[0].outcomes(&fan, &change));
+        let sum: f64 = pitched.none + pitched.components.iter().map(|c| c.probability).sum::<f64>();
+        assert!((sum - 1.0).abs() < 1e-12, "{sum}");
+        for (before, after) in level.components.iter().zip(&pitched.components) {
+            let Distribution::Student { middle_cm, .. } = before.distribution else { continue };
+            let kept = after.probability / before.probability.max(f64::MIN_POSITIVE);
+            let is_hit = before.source == Source::Hit && before.probability > 0.0;
+            assert!(!is_hit || middle_cm < 80.0 || kept < 0.01, "{middle_cm}: {kept}");
+            assert!(!is_hit || middle_cm > 40.0 || kept > 0.99, "{middle_cm}: {kept}");
+        }
+        floor_heard = floor_heard.max(pitched.components.last().expect("the floor").probability);
+    }
+    assert!((0.3..=0.4).contains(&floor_heard), "{floor_heard}");
 }

@@ -8,6 +8,7 @@ use crate::words;
 use mindgap_diagnosis::channel::Channel;
 use mindgap_diagnosis::explain::evidence::Evidence;
 use mindgap_diagnosis::explain::profile::{Bin, ResidualProfile};
+use mindgap_diagnosis::scope::of_sensor;
 use mindgap_diagnosis::verdict::NamedEffect;
 use mindgap_figures::pictures;
 use mindgap_models::effects::Effect;
@@ -41,11 +42,15 @@ pub fn section(subject: &Subject) -> Option<Section> {
 
 fn cause(effect: &NamedEffect, evidence: &[Evidence], catalogue: &[&'static Effect]) -> Markup {
     let named = words::cause(effect.id, catalogue);
+    let sensor = effect.sensor.as_deref();
+    let name = of_sensor(words::name(effect.id, catalogue), sensor);
+    let anchor =
+        sensor.map_or_else(|| format!("cause-{}", effect.id), |sensor| format!("cause-{}-{sensor}", effect.id));
     let rivals: Vec<&str> = effect.ambiguous_with.iter().map(|id| words::name(id, catalogue)).collect();
     html! {
-        article.card aria-labelledby={ "cause-" (effect.id) } {
-            h3 #{ "cause-" (effect.id) } {
-                (words::name(effect.id, catalogue)) " " small.quiet { code { (effect.id) } }
+        article.card aria-labelledby=(anchor) {
+            h3 #(anchor) {
+                (name) " " small.quiet { code { (effect.id) } }
             }
             dl {
                 @if let Some(cause) = named { dt { "What it is" } dd { (cause.what) } }
@@ -53,15 +58,17 @@ fn cause(effect: &NamedEffect, evidence: &[Evidence], catalogue: &[&'static Effe
                     dt { "How strong (95\u{a0}%)" }
                     dd { (effect.strength()) @if has_direction(effect) { ". Directions: 0 is along x, 90 along y." } }
                 }
+                @if let Some(ruler) = effect.ruler.as_ref() { dt { "By ruler and watch" } dd { (ruler) } }
                 @if let Some(share) = effect.share { dt { "Of the gap" } dd { (words::percent(share)) } }
                 dt { "Probability" }
                 dd {
                     (words::percent(effect.probability))
                     @if !rivals.is_empty() { ". These logs cannot tell it from " (words::list(&rivals)) "." }
                 }
+                @if !effect.witness.is_empty() { dt { "Shown by" } dd { (words::list(&effect.witness)) } }
                 @if let Some(cause) = named { dt { "How to check" } dd { (cause.check) } }
             }
-            @if let Some(evidence) = evidence.iter().find(|e| e.effect == effect.id) {
+            @if let Some(evidence) = evidence.iter().find(|e| e.effect == effect.id && e.sensor == effect.sensor) {
                 h4 { "The evidence" }
                 @let kinds = [("without the effect", evidence.without.as_slice()), ("with it", &evidence.with)];
                 @let drawn = pictures::residuals(evidence.depends_on, evidence.unit, &kinds).draw();
@@ -86,7 +93,7 @@ fn has_direction(effect: &NamedEffect) -> bool {
 fn unexplained(profile: &ResidualProfile) -> Markup {
     let off = |bin: &Bin| format!("{} ± {}", words::number(bin.off, 2), words::number(1.96 * bin.error, 2));
     let rows: Vec<[String; 2]> = profile.bins.iter().map(|bin| [range(bin), off(bin)]).collect();
-    let name = words::channel(profile.channel);
+    let name = of_sensor(words::channel(profile.channel), profile.sensor.as_deref());
     let alternative = format!("Logged minus predicted {name} along {}: {}.", profile.depends_on, reach(&profile.bins));
     let kinds = [("remaining residual", profile.bins.as_slice())];
     let drawn = pictures::residuals(profile.depends_on, profile.unit, &kinds).draw();

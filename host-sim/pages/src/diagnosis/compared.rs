@@ -4,7 +4,6 @@ use maud::html;
 
 use super::{Source, Subject};
 use crate::document::Section;
-use crate::words;
 
 /// The section.
 pub fn section(subject: &Subject) -> Section {
@@ -26,11 +25,6 @@ pub fn section(subject: &Subject) -> Section {
             }
             dt { "Program" } dd { "mindgap " (env!("CARGO_PKG_VERSION")) ", seed " (seed) ", " (catalogue.len())
             " effects" }
-            @if let Some(next) = diagnosis.reduction.as_ref().and_then(|reduction| reduction.runner_up.as_ref()) {
-                @let names: Vec<&str> = next.id.split('+').map(|id| words::name(id, catalogue)).collect();
-                dt { "Next best answer" }
-                dd { (words::list(&names)) " would close " (words::percent(next.reducible_closed)) }
-            }
         }
         @if !diagnosis.data.is_empty() {
             h3 { "What was wrong with the logs" }

@@ -9,6 +9,7 @@ use mindgap_diagnosis::Findings;
 use mindgap_diagnosis::account::ChannelReduction;
 use mindgap_diagnosis::explain::room_map;
 use mindgap_diagnosis::explain::strata::Stratum;
+use mindgap_diagnosis::scope::of_sensor;
 use mindgap_figures::report::Figure;
 use mindgap_figures::report::before_and_after::BeforeAndAfter;
 use mindgap_figures::report::room::Room;
@@ -29,21 +30,24 @@ pub fn section(findings: &Findings, room: &Room) -> Option<Section> {
     if channels.is_empty() && diagnosis.strata.is_empty() {
         return None;
     }
-    let ends = |of: &ChannelReduction| (words::channel(of.channel), [of.reduction.before, of.reduction.after]);
-    let channels: Vec<(&str, [f64; 2])> = channels.iter().map(ends).collect();
+    let ends = |of: &ChannelReduction| {
+        let name = of_sensor(words::channel(of.channel), of.sensor.as_deref());
+        (name, [of.reduction.before, of.reduction.after])
+    };
+    let channels: Vec<(String, [f64; 2])> = channels.iter().map(ends).collect();
     let named: Vec<String> = channels
         .iter()
         .map(|(name, [before, after])| format!("{name} {before:.2} before and {after:.2} after"))
         .collect();
     let rows: Vec<[String; 3]> = channels
         .iter()
-        .map(|(name, [before, after])| [(*name).into(), words::number(*before, 3), words::number(*after, 3)])
+        .map(|(name, [before, after])| [name.clone(), words::number(*before, 3), words::number(*after, 3)])
         .collect();
     let circumstances: Vec<[String; 4]> = diagnosis.strata.iter().map(circumstance).collect();
     let drawn = BeforeAndAfter {
         axis: "gap (nats per step)".into(),
         kinds: ["without the effects".into(), "with the effects".into()],
-        rows: channels.iter().map(|(name, ends)| ((*name).into(), *ends)).collect(),
+        rows: channels.iter().map(|(name, ends)| (name.clone(), *ends)).collect(),
     };
     let body = html! {
         @if !channels.is_empty() {
@@ -88,7 +92,7 @@ fn drawn_map(map: &room_map::RoomMap, room: &Room) -> Figure {
 fn circumstance(stratum: &Stratum) -> [String; 4] {
     let [low, high] = stratum.ci95.map(|end| words::number(end, 2));
     [
-        words::channel(stratum.channel).into(),
+        of_sensor(words::channel(stratum.channel), stratum.sensor.as_deref()),
         stratum.context.into(),
         words::percent(stratum.share),
         format!("{} ({low} to {high})", words::number(stratum.gap, 2)),

@@ -95,7 +95,7 @@ pub fn replay(subject: &Subject, room: Room) -> Option<Replay> {
     let after = baseline.chain_with(&found);
     let run = |(number, rows): (usize, usize)| {
         let whole = seen[number];
-        let run = Run { name: whole.name.clone(), rows: whole.rows.between(0..rows).collect() };
+        let run = Run { name: whole.name.clone(), rows: whole.rows.beginning(rows) };
         let mut tracks = BTreeMap::from([
             (ROBOT.id, Player::logged(&run).into()),
             (SIMULATOR.id, player.simulated(&before, &run).into()),

@@ -7,7 +7,6 @@ fn main() {}
 
 #[cfg(target_os = "none")]
 mod on_target {
-    use core::arch::asm;
     use core::hint::black_box;
 
     use mindgap_core::chance::Generator;
@@ -15,6 +14,7 @@ mod on_target {
     use mindgap_core::rand_core::SeedableRng;
     use mindgap_firmware::controller::CONTROLLER;
     use mindgap_firmware::job;
+    use mindgap_firmware::marks::{count_from_here, count_to_here};
 
     #[cfg(cortex_m)]
     use cortex_m_rt as _;
@@ -36,19 +36,5 @@ mod on_target {
             black_box((machine.motors(), &outputs));
         }
         semihosting::process::exit(0)
-    }
-
-    #[unsafe(no_mangle)]
-    #[inline(never)]
-    extern "C" fn count_from_here() {
-        // SAFETY: does nothing. One instruction here and two below keep the two marks apart.
-        unsafe { asm!("nop") }
-    }
-
-    #[unsafe(no_mangle)]
-    #[inline(never)]
-    extern "C" fn count_to_here() {
-        // SAFETY: does nothing.
-        unsafe { asm!("nop", "nop") }
     }
 }

@@ -12,10 +12,12 @@ mod on_target {
     use mindgap_core::fixed_network::FixedNetwork;
     use mindgap_core::folded::{FoldedNetwork, evaluate_all};
     use mindgap_core::maths;
+    use mindgap_core::monitor::{Alternative, Monitor, Step};
     use mindgap_core::network::{Network, ProductUnit, Scaling, SummationUnit};
     use mindgap_core::pair::Pair;
     use mindgap_firmware::controller::CONTROLLER;
     use mindgap_firmware::job;
+    use mindgap_firmware::monitor::LAW;
     use mindgap_firmware::networks::{ECHO_VALUE, TURN};
 
     #[cfg(cortex_m)]
@@ -31,6 +33,7 @@ mod on_target {
         fixed_network(&ECHO_VALUE);
         fixed_network(&TURN);
         functions(black_box(0.5));
+        monitor();
         #[cfg(feature = "reachable-panic")]
         assert!(black_box(0) == 0);
         semihosting::process::exit(0)
@@ -64,6 +67,19 @@ mod on_target {
 
     fn fixed_network<const N: usize, const POWERS: usize>(network: &FixedNetwork<N, POWERS>) {
         black_box(black_box(network.clone()).evaluate(black_box([job::HALF; N])));
+    }
+
+    fn monitor() {
+        let mut monitor = Monitor::new(black_box(&LAW));
+        monitor.start_run();
+        let number = || black_box(job::HALF);
+        let step = Step {
+            commands: [number(); 4],
+            predicted: [number(); 2],
+            measured: black_box(Some([number(); 2])),
+            duration_ms: black_box(400),
+        };
+        black_box((monitor.step(black_box(&LAW), &step), monitor.evidence(black_box(Alternative::Wider(0)))));
     }
 
     fn functions(x: f32) {

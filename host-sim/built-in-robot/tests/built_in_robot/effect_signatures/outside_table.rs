@@ -15,9 +15,9 @@ fn turn_surplus_deg(s: &MotionSample) -> f64 {
 }
 
 #[test]
-fn table_has_29_effects_and_others_are_outside() {
+fn table_has_32_effects_and_others_are_outside() {
     let (inside, outside): (Vec<Effect>, Vec<Effect>) = Effect::all().partition(|effect| effect.in_table());
-    assert_eq!(inside.len(), 29);
+    assert_eq!(inside.len(), 32);
     assert!(outside.len() >= 7 && outside.contains(&Effect::Unchanged));
 }
 

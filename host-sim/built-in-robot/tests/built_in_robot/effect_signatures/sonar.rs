@@ -69,6 +69,21 @@ fn sonar_yaw_makes_echoes_depend_on_the_side() {
 }
 
 #[test]
+fn sonar_pitch_hides_what_is_beyond_the_floor() {
+    for driving in drivings() {
+        let beyond = |m: &Measured| {
+            let far = || m.sonar.iter().filter(|s| s.distance_cm > 90.0);
+            [readings_that(far(), |echo, _| echo > 85.0), readings_that(far(), |echo, _| (echo - 70.0).abs() < 8.0)]
+        };
+        let near = |m: &Measured| rate(square(m, 10.0, 40.0));
+        let (without, with) = driving.without_and_with("sonar_pitch=70", |m| (beyond(m), near(m)));
+        assert!(without.0[0] > 0.5 && with.0[0] < 0.05, "{without:?} {with:?}");
+        assert!(without.0[1] < 0.1 && with.0[1] > 0.6, "{without:?} {with:?}");
+        assert!((without.1 - with.1).abs() < 0.03, "{without:?} {with:?}");
+    }
+}
+
+#[test]
 fn sonar_beam_wider_reads_shorter_at_oblique_walls() {
     for driving in drivings() {
         let ratio = |m: &Measured| {

@@ -2,7 +2,7 @@
 
 use mindgap_foundations::geometry::wrap_rad;
 
-use super::measures::{Measured, asked_motion, drivings, slope, two_slopes};
+use super::measures::{Measured, asked_motion, drivings, is_steady, median, slope, two_slopes};
 
 /// Observed per commanded forward travel between two distances from the centre of the picture.
 fn forward_between(m: &Measured, near_cm: f64, far_cm: f64) -> f64 {
@@ -62,6 +62,44 @@ fn compass_disturbance_gives_heading_dependent_errors() {
         };
         let (without, with) = driving.without_and_with("compass_disturbance=8@70", amplitude_deg);
         assert!(without < 1.5 && (5.0..11.0).contains(&with), "{without} {with}");
+    }
+}
+
+/// Of a heading that is old by a share of a step, a steady turn shows that share too little at the start of each step.
+#[test]
+fn heading_lag_turns_displacements_to_the_inside_of_turns() {
+    for driving in drivings() {
+        let inside = |m: &Measured| {
+            let steady = m.motion.iter().filter(|s| is_steady(s) && s.forward_cm > 4.0);
+            slope(steady.map(|s| (s.turn_rad, libm::atan2(s.lateral_cm, s.forward_cm) - 0.5 * s.turn_rad)))
+        };
+        let (without, with) = driving.without_and_with("heading_lag=160", inside);
+        assert!(without.abs() < 0.03 && (0.33..0.47).contains(&with), "{without} {with}");
+    }
+}
+
+#[test]
+fn tracker_delay_shows_motion_late_and_readings_ahead() {
+    for driving in drivings() {
+        let late = |m: &Measured| {
+            let mean = |pair: [f64; 2]| 0.5 * (pair[0] + pair[1]);
+            let (now, before) = two_slopes(m.motion.iter().map(|s| {
+                let [left, right, left_before, right_before] = s.speeds;
+                (mean([left, right]), mean([left_before, right_before]), s.forward_cm)
+            }));
+            before / (now + before)
+        };
+        let ahead = |m: &Measured| {
+            let pairs =
+                m.sonar.windows(2).filter(|w| w[0].row + 1 == w[1].row && w.iter().all(|s| s.alpha_deg() < 20.0));
+            let moved = pairs.filter(|w| (4.0..12.0).contains(&(w[0].distance_cm - w[1].distance_cm).abs()));
+            median(
+                moved.filter_map(|w| Some((w[1].distance_cm - w[1].echo_cm?) / (w[0].distance_cm - w[1].distance_cm))),
+            )
+        };
+        let (without, with) = driving.without_and_with("tracker_delay=160", |m| (late(m), ahead(m)));
+        assert!((0.3..0.5).contains(&(with.0 - without.0)), "{without:?} {with:?}");
+        assert!((0.2..0.6).contains(&(with.1 - without.1)), "{without:?} {with:?}");
     }
 }
 

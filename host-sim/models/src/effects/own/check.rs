@@ -145,7 +145,7 @@ pub fn changes_nothing(variant: &Variant) -> Result<(), String> {
             match hook {
                 Hook::Commands(change) | Hook::CommandsHere(change) => change(&nominal, &step, &mut commands),
                 // No expression makes one.
-                Hook::DeadTime(_) | Hook::Filter(_) | Hook::Delay(_) => {}
+                Hook::DeadTime(_) | Hook::Filter(_) | Hook::Delay(_) | Hook::HeadingLag(_) => {}
                 Hook::Motion(change) | Hook::MotionHere(change) => change(&nominal, &step, &mut moved),
                 Hook::Sensor(change) | Hook::SensorHere(change) | Hook::Ray(change) => {
                     change(&nominal, &step, &mut sensor)

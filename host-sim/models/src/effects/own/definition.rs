@@ -7,9 +7,9 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Definition {
-    /// By which it is named in an answer.
+    /// Id by which a diagnosis names it.
     pub id: String,
-    /// What it supposes, in a sentence.
+    /// What it assumes, in one sentence.
     pub description: String,
     /// What is fitted.
     #[serde(rename = "parameter", default)]
@@ -22,19 +22,19 @@ pub struct Definition {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ParameterDefinition {
-    /// Its name in expressions and answers.
+    /// Its name in expressions and in a diagnosis.
     pub name: String,
     /// Its unit; empty for a share, a factor or a probability.
     #[serde(default)]
     pub unit: String,
     /// With this value it changes nothing.
     pub nominal: f64,
-    /// Least and largest value that is possible.
+    /// Smallest and largest possible value.
     pub bounds: [f64; 2],
-    /// Standard deviation of the normal prior about the nominal value; every value is as likely without.
+    /// Standard deviation of the normal prior about the nominal value; without it the prior is flat.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub prior_sd: Option<f64>,
-    /// Where fits start; a tenth of the way to either bound without.
+    /// Starting values of fits; by default a tenth of the way to either bound.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub guesses: Vec<f64>,
 }
@@ -49,19 +49,19 @@ pub struct Change {
     /// Command of the right motor, -100 to 100.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub right: Option<String>,
-    /// Way forward in the step, cm.
+    /// Expression for the forward motion in the step, cm.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub forward_cm: Option<String>,
-    /// Way to the left in the step, cm.
+    /// Expression for the motion to the left in the step, cm.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lateral_cm: Option<String>,
-    /// Turn to the left in the step, radians.
+    /// Expression for the turn to the left in the step, radians.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub turn_rad: Option<String>,
-    /// The reading, cm: a factor on `echo_cm` and a length.
+    /// Expression for the reading, cm: a factor on `echo_cm`, plus a length.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub echo_cm: Option<String>,
-    /// Loss of log-odds that a ray comes back.
+    /// Expression for the loss in the log-odds that a ray returns.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub echo_loss: Option<String>,
 }

@@ -172,7 +172,11 @@ impl<'a> Robots<'a> {
             for (speed, row) in speeds.iter_mut().zip(&self.speeds) {
                 *speed = load(simd, row);
             }
-            motion = self.environment.motion.evaluate(speeds);
+            let mut rows = self.environment.motion.evaluate(speeds).map(row);
+            for lane in (0..Lanes::<S>::WIDTH).filter(|lane| self.rests(*lane)) {
+                rows.iter_mut().for_each(|row| row[lane] = 0.0);
+            }
+            motion = rows.map(|row| load(simd, &row));
         }
         if self.environment.noise == Noise::Learned {
             let residuals = self.residuals(Lanes::<S>::WIDTH, draws);
@@ -288,6 +292,10 @@ impl<'a> Robots<'a> {
         self.set_motion(lane, step.motion);
     }
 
+    fn rests(&self, lane: usize) -> bool {
+        self.environment.motion.rests(&self.speeds.each_ref().map(|row| row[lane]))
+    }
+
     fn set_motion(&mut self, lane: usize, motion: Motion<f32>) {
         for (row, value) in self.motion.iter_mut().zip(motion) {
             row[lane] = value;
@@ -328,6 +336,10 @@ impl<'a> Robots<'a> {
             let (bits, held_bits) = (draws.bits[lane], draws.held_bits[lane]);
             if self.first[lane] > 0.0 {
                 run.held_levels = Motion::from_fn(|axis| level(held_bits, axis as u32));
+            }
+            // Nothing scatters where nothing moves.
+            if self.motion.iter().all(|row| row[lane] == 0.0) {
+                continue;
             }
             let times = run.request.motions.scatter(run.machine.tuple());
             for axis in Axis::ALL {

@@ -1,13 +1,15 @@
 use super::*;
 use crate::effects::applied::AppliedEffect;
 use crate::effects::catalogue::Candidate;
+use crate::simulator::baseline::Baseline;
 use crate::simulator::environment::SensorModel;
 use crate::simulator::known_steps::KnownSteps;
 use crate::simulator::motion::{MotionTable, speeds};
 use crate::simulator::{Noise, Simulator};
 use mindgap_built_in_robot::{default_robot, four_obstacles, record, training_room};
-use mindgap_core::controller::{Controller, Machine, Status, TUPLES};
+use mindgap_core::controller::{Controller, Machine, Status, TUPLES, Tuple, When};
 use mindgap_foundations::executor::Serial;
+use mindgap_foundations::motion::Motion;
 use mindgap_foundations::random::generator;
 use mindgap_learning::evolve::genome::GenotypeDecoder;
 use mindgap_learning::learn::train::{self, TABLE_ONE, Trainer};
@@ -222,5 +224,34 @@ fn a_step_is_known_as_the_networks_say_it() {
         if number % 100 == 0 {
             assert_eq!(step, environment.motion.trained_step([command[0], command[1], 20.0, -20.0]), "{command:?}");
         }
+    }
+}
+
+/// Networks and biases say something of commands of zero too, but rest is known without logs.
+#[test]
+fn commands_of_zero_stand_still() {
+    let robots = SIMULATOR.robots(2, SEED).unwrap();
+    let tuple = |command: i8, when| Tuple { left: command, right: command, when, threshold_cm: 0 };
+    // Drives for a step and then rests.
+    let mut tuples = [tuple(0, When::Smaller); TUPLES];
+    tuples[0] = tuple(60, When::Larger);
+    let controller = Controller { step_ms: 400, max_steps: 30, tuples };
+    let kinds =
+        || environments().into_iter().chain(robots.drawn.iter().map(|r| environment(Noise::Learned).of_robot(r)));
+    for environment in kinds().chain(kinds().map(Environment::asking_every_step)) {
+        let motions = environment.motions(&controller);
+        let (outcome, points) =
+            environment.trace(RolloutRequest { controller: &controller, motions: &motions, seed: SEED });
+        assert_eq!((outcome.termination, points.len()), (Termination::TimedOut, 30));
+        let at_rest = points.iter().rposition(|point| point.tuple == 0).map_or(1, |last| last + 2);
+        let place = points[at_rest].pose;
+        assert!(
+            points[at_rest..].iter().all(|point| point.pose == place) && place.position_cm != environment.start_cm()
+        );
+    }
+    for baseline in [Baseline::learned(&SIMULATOR), Baseline::at_posterior_mean(&SIMULATOR)] {
+        let motion = baseline.unwrap().motion.unwrap();
+        assert_eq!(motion.step([0.0; 2], [0.0; 2]), Motion::ZERO);
+        assert_eq!(motion.own_error([0.0; 2], [0.0; 2]), Motion::ZERO);
     }
 }

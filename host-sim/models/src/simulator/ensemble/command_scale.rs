@@ -40,6 +40,11 @@ impl CommandScale {
         (0.01 * self.0) as f32
     }
 
+    /// Whether a command is zero: below half a percent, the resolution of controllers.
+    pub fn is_rest(self, command: [f64; 2]) -> bool {
+        self.percent(command).0.iter().all(|percent| percent.abs() < 0.5)
+    }
+
     /// A command in percent.
     pub fn percent(self, command: [f64; 2]) -> Percent {
         Percent(command.map(|c| self.0 * c))

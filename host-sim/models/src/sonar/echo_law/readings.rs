@@ -64,7 +64,7 @@ impl FirstEchoLaw {
         components.extend(others);
         let none = known * (silent - other) + 0.5 * self.p_stray;
         let outcomes = Outcomes { none, components, range_cm: self.range_cm }.with_faults(change, reach_cm);
-        outcomes.without_hits_led_beyond_range(change)
+        outcomes.without_hits_led_beyond_range(change).above_floor(change, reach_cm)
     }
 
     /// Returns the direct echoes of targets, without stray readings.

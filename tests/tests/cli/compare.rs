@@ -1,0 +1,109 @@
+//! `mindgap compare`, `--patch` and `--verify`.
+
+use std::fs;
+
+use mindgap_tests::command::{Outcome, Sandbox};
+use serde_json::Value;
+
+use super::schemas::is_described;
+
+const COMPARE: &str = "compare logs --real real --patch logs/robot.toml=patched.toml --json found.json --force";
+
+/// Makes logs of a simulator in `logs`, and in `real` those of a robot that turns less by a fifth.
+fn both_sides() -> Sandbox {
+    let sandbox = Sandbox::new();
+    sandbox.run("record --out logs --runs 12 --steps 40");
+    sandbox.run("record --out real --runs 12 --steps 40 --seed 2 --effect track_width=0.8");
+    sandbox
+}
+
+/// Returns a robot's track as patched, and the patches that say so.
+#[track_caller]
+fn patched(sandbox: &Sandbox) -> (f64, Vec<Value>) {
+    let robot: toml::Table = sandbox.text("patched.toml").parse().expect("TOML");
+    let patches = sandbox.json("found.json")["patches"].as_array().expect("a list").clone();
+    (robot["track_cm"].as_float().expect("a number"), patches)
+}
+
+#[cfg(unix)]
+fn verified(sandbox: &Sandbox, script: &str) -> Outcome {
+    sandbox.write("drive.sh", script);
+    let mut command = sandbox.command(COMPARE);
+    sandbox.execute({
+        command.args(["--verify", "sh drive.sh"]);
+        command
+    })
+}
+
+#[test]
+fn causes_are_written_into_a_copy_of_the_model() {
+    let sandbox = both_sides();
+    let old = sandbox.text("logs/robot.toml");
+    let outcome = sandbox.call(&format!("{COMPARE} --exit-code"));
+    assert_eq!(outcome.code, 3, "there is a gap: {}", outcome.err);
+    is_described(&sandbox, "compare", "found.json");
+    let (track_cm, patches) = patched(&sandbox);
+    assert!((track_cm - 11.5 / 0.8).abs() < 0.7, "{track_cm}");
+    let [patch] = patches.as_slice() else { panic!("{patches:?}") };
+    assert_eq!(
+        (&patch["tag"], &patch["old"], &patch["effect"]),
+        (&"track_cm".into(), &"11.5".into(), &"track_width".into())
+    );
+    let ends: Vec<f64> = patch["ci95"].as_array().expect("an interval").iter().filter_map(Value::as_f64).collect();
+    assert!(ends[0] < track_cm && track_cm < ends[1], "{ends:?}");
+    assert_eq!(
+        sandbox.text("patched.toml").replace(patch["new"].as_str().expect("text"), "11.5"),
+        old,
+        "all other bytes"
+    );
+    assert_eq!(sandbox.text("logs/robot.toml"), old, "the model stays");
+
+    sandbox.run("train logs --out sim.json");
+    sandbox.run("diagnose sim.json real --patch logs/robot.toml=diagnosed.toml --json diagnosed.json");
+    is_described(&sandbox, "diagnose", "diagnosed.json");
+    assert_eq!(sandbox.text("diagnosed.toml"), sandbox.text("patched.toml"), "diagnose patches alike");
+}
+
+#[cfg(unix)]
+#[test]
+fn a_patch_is_proved_by_held_out_runs_or_withdrawn() {
+    let sandbox = both_sides();
+    let call = "echo \"$1 $2 $3\" >> calls\nhead -n 1 \"$2\" >> calls\n";
+    let exact = verified(&sandbox, &format!("{call}cp real/$(basename \"$3\") \"$3\"\n"));
+    assert_eq!(exact.code, 0, "{}", exact.err);
+    is_described(&sandbox, "compare", "found.json");
+    let verification = sandbox.json("found.json")["verification"].clone();
+    for length in verification.as_array().filter(|all| all.len() == 2).expect("two lengths") {
+        assert_eq!((&length["after_cm"], &length["withdrawn"]), (&0.0.into(), &false.into()), "{length}");
+        assert!(length["before_cm"].as_f64() > Some(0.5), "{length}");
+    }
+    let calls = sandbox.text("calls");
+    let model = fs::canonicalize(sandbox.path()).expect("a folder").join("patched.toml").display().to_string();
+    let models = calls.lines().step_by(2).map(|line| line.split(' ').next().expect("a word"));
+    assert!(models.clone().all(|given| given == model), "{calls}");
+    assert_eq!(models.count(), 3, "one call for each of runs 3, 7 and 11");
+    assert!(calls.lines().skip(1).step_by(2).all(|header| header == "t_ms,left,right"), "{calls}");
+
+    let wrong = verified(&sandbox, "cp logs/run-000.csv \"$3\"\n");
+    assert_eq!(wrong.code, 0, "{}", wrong.err);
+    assert_eq!(sandbox.json("found.json")["verification"][0]["withdrawn"], true);
+    assert_eq!(sandbox.text("patched.toml"), sandbox.text("logs/robot.toml"), "a copy of the model");
+    assert!(patched(&sandbox).1.is_empty());
+
+    let none = verified(&sandbox, "echo >> tries\n");
+    assert_eq!((none.code, none.err.lines().count()), (1, 1), "{}", none.err);
+    assert!(none.err.contains("was not written by the simulator's command"), "{}", none.err);
+    assert_eq!(sandbox.text("tries").lines().count(), 2, "a failure is repeated once");
+}
+
+#[test]
+fn too_little_of_the_simulator_asks_for_more() {
+    let sandbox = Sandbox::new();
+    sandbox.run("record --out logs --runs 2 --steps 25");
+    sandbox.run("record --out real --runs 4 --steps 25 --seed 2");
+    let outcome = sandbox.call("compare logs --real real --out asked");
+    assert_eq!((outcome.code, outcome.err.lines().count()), (1, 1), "{}", outcome.err);
+    assert!(outcome.err.contains("drive-these.csv"), "{}", outcome.err);
+    assert!(sandbox.text("asked/drive-these.csv").starts_with("t_ms,left,right\n"));
+    sandbox.run("info asked/drive-these.mcap");
+}
