@@ -32,9 +32,20 @@ type FacedRow<'s> = Recent<SensorPose, Option<Faced<'s>>>;
 /// All that decides what the sensor faces: the robot's pose, the sensor's yaw on it, and the width of its beam.
 type SensorPose = (Pose, f64, f64);
 
-/// The latest evaluations with their arguments, most recently used first.
+/// The latest evaluations with their arguments.
 #[derive(Clone)]
-struct Recent<K, V>(Vec<(K, V)>);
+struct Recent<K, V> {
+    entries: Vec<Entry<K, V>>,
+    /// Counts uses.
+    now: u64,
+}
+
+#[derive(Clone)]
+struct Entry<K, V> {
+    key: K,
+    value: V,
+    used: u64,
+}
 
 /// A point of a fit, and one shifted point for each of five parameters that move the sensor.
 const CAPACITY: usize = 6;
@@ -83,25 +94,36 @@ impl<'c, 's> SensorCache<'c, 's> {
 
 impl<K, V> Default for Recent<K, V> {
     fn default() -> Self {
-        Recent(Vec::new())
+        Recent { entries: Vec::new(), now: 0 }
     }
 }
 
 impl<K: PartialEq, V> Recent<K, V> {
     fn known(&self, key: &K) -> Option<&V> {
-        self.0.iter().find(|(known, _)| known == key).map(|(_, value)| value)
+        self.entries.iter().find(|entry| entry.key == *key).map(|entry| &entry.value)
     }
 
-    /// Returns the value of a key, which is evaluated unless it is cached.
+    /// Returns the value of a key, which is evaluated unless it is cached. Entries are large, so they stay where they are.
     fn get(&mut self, key: K, evaluate: impl FnOnce() -> V) -> &V {
-        match self.0.iter().position(|(known, _)| *known == key) {
-            Some(index) => self.0[..=index].rotate_right(1),
-            None => {
-                self.0.truncate(CAPACITY - 1);
-                self.0.insert(0, (key, evaluate()));
+        self.now += 1;
+        let used = self.now;
+        let known = self.entries.iter().position(|entry| entry.key == key);
+        let index = known.unwrap_or_else(|| {
+            let entry = Entry { key, value: evaluate(), used };
+            let oldest = (0..self.entries.len()).min_by_key(|i| self.entries[*i].used);
+            match oldest.filter(|_| self.entries.len() == CAPACITY) {
+                Some(oldest) => {
+                    self.entries[oldest] = entry;
+                    oldest
+                }
+                None => {
+                    self.entries.push(entry);
+                    self.entries.len() - 1
+                }
             }
-        }
-        &self.0[0].1
+        });
+        self.entries[index].used = used;
+        &self.entries[index].value
     }
 }
 

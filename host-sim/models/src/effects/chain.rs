@@ -146,10 +146,17 @@ impl EffectChain {
         // Poses that are late by a fraction of a step need the step before.
         let reach_steps = memory_steps + late.drive_steps + late.poses_steps.ceil() + heading_steps;
         let mut phases = context.pieces.phases(&context.commands, reach_steps);
-        for history in &mut phases.histories {
-            *history = self.changed(context, *history);
+        if self.changes_commands() {
+            for history in &mut phases.histories {
+                *history = self.changed(context, *history);
+            }
         }
         phases
+    }
+
+    fn changes_commands(&self) -> bool {
+        let changes = |hook: &Hook| matches!(hook, Hook::Commands(_) | Hook::CommandsHere(_));
+        self.links.iter().any(|(variant, _)| variant.hooks.iter().any(changes))
     }
 
     /// Returns commands as effects change them.

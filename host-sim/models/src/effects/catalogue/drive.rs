@@ -9,15 +9,24 @@ use crate::effects::twist::{twist, wheels};
 pub struct Drive {
     /// Its time constant, in steps.
     steps: f64,
+    /// The fraction of a change of speed that is left after a step.
+    left_of_step: f64,
     /// The command that just overcomes the friction.
     friction: f64,
 }
 
+/// Time constants after which a change of speed has decayed to one part in 10¹³, which rounding hides.
+const FORGOTTEN_AFTER: f64 = 30.0;
+
 impl Drive {
+    fn new(steps: f64, friction: f64) -> Self {
+        Drive { steps, left_of_step: libm::exp(-1.0 / steps), friction }
+    }
+
     /// Returns a drive slower by `ms` than the one that simulators know, with dry friction that the command for this share
     /// of the reference speed just overcomes.
     pub fn slower(ms: f64, friction: f64, context: &StepContext) -> Self {
-        Drive { steps: (MOTOR_MS + ms) / context.robot.step_ms, friction: context.command_for(friction) }
+        Drive::new((MOTOR_MS + ms) / context.robot.step_ms, context.command_for(friction))
     }
 
     /// Returns the drive that simulators know, with the load of the robot's body on the motors scaled by `factor`.
@@ -46,12 +55,18 @@ impl Drive {
     fn imitating(&self, other: &Drive, commands: [f64; HISTORY]) -> [f64; 2] {
         // This one follows a command late too: it is given what makes the mean of the other one.
         let missed = self.missed();
-        let mut speed = other.settled(commands[HISTORY - 1]);
-        for command in commands[1..HISTORY - 1].iter().rev() {
+        let memory_steps = other.memory_steps();
+        let mut speed = other.settled(commands[memory_steps + 1]);
+        for command in commands[1..=memory_steps].iter().rev() {
             (_, speed) = other.step(speed, *command);
         }
         let (mean, _) = other.step(speed, commands[0]);
         [self.command_for((mean - missed * speed) / (1.0 - missed)), self.command_for(speed)]
+    }
+
+    /// Returns the number of steps after which an earlier speed no longer shows, as far as the history reaches.
+    fn memory_steps(&self) -> usize {
+        ((FORGOTTEN_AFTER * self.steps).ceil() as usize).min(HISTORY - 2)
     }
 
     /// Returns the steady-state speed of a command.
@@ -71,22 +86,24 @@ impl Drive {
         let turns_back = speed * towards < 0.0;
         let until_rest = if turns_back { self.steps * libm::log(1.0 - speed / towards) } else { f64::INFINITY };
         if until_rest >= 1.0 {
-            return self.approach(speed, towards, 1.0);
+            return self.approach(speed, towards, 1.0, self.left_of_step);
         }
-        let (on, _) = self.approach(speed, towards, until_rest);
-        let (back, then) = self.approach(0.0, self.settled(command), 1.0 - until_rest);
+        let part =
+            |from: f64, towards: f64, steps: f64| self.approach(from, towards, steps, libm::exp(-steps / self.steps));
+        let (on, _) = part(speed, towards, until_rest);
+        let (back, then) = part(0.0, self.settled(command), 1.0 - until_rest);
         (on + back, then)
     }
 
-    /// Returns the distance covered in this number of steps towards a speed, and the final speed.
-    fn approach(&self, from: f64, towards: f64, steps: f64) -> (f64, f64) {
-        let left = libm::exp(-steps / self.steps);
+    /// Returns the distance covered in this number of steps towards a speed, after which the fraction `left` of the change is
+    /// left, and the final speed.
+    fn approach(&self, from: f64, towards: f64, steps: f64, left: f64) -> (f64, f64) {
         (towards * steps + (from - towards) * self.steps * (1.0 - left), towards + (from - towards) * left)
     }
 
     /// Returns the fraction of a change of speed that its first step misses.
     fn missed(&self) -> f64 {
-        self.steps * (1.0 - libm::exp(-1.0 / self.steps))
+        self.steps * (1.0 - self.left_of_step)
     }
 }
 
@@ -108,7 +125,7 @@ mod tests {
 
     #[test]
     fn step_is_the_integral_of_the_drive() {
-        let drive = Drive { steps: 0.6, friction: 8.0 };
+        let drive = Drive::new(0.6, 8.0);
         for (speed, command) in
             [(0.0, 50.0), (0.0, 5.0), (40.0, 0.0), (2.0, 0.0), (40.0, -60.0), (-3.0, 5.0), (-30.0, 90.0), (10.0, 60.0)]
         {
@@ -121,7 +138,7 @@ mod tests {
 
     #[test]
     fn drive_that_keeps_its_direction_imitates_itself_with_the_same_commands() {
-        let drive = Drive { steps: 0.1, friction: 5.0 };
+        let drive = Drive::new(0.1, 5.0);
         let mut commands = [[0.0; 2]; HISTORY];
         commands[..3].copy_from_slice(&[[60.0, -40.0], [20.0, -50.0], [80.0, -30.0]]);
         let given = commands;
@@ -134,7 +151,7 @@ mod tests {
     /// On the spot each wheel moves as with a drive that is slower in everything.
     #[test]
     fn drive_that_is_slower_in_turns_is_unchanged_on_the_straight() {
-        let (known, slower) = (Drive { steps: 0.1, friction: 0.0 }, Drive { steps: 0.4, friction: 0.0 });
+        let (known, slower) = (Drive::new(0.1, 0.0), Drive::new(0.4, 0.0));
         let mut straight = [[0.0; 2]; HISTORY];
         straight[..3].copy_from_slice(&[[60.0; 2], [20.0; 2], [80.0; 2]]);
         let mut commands = straight;
@@ -150,7 +167,7 @@ mod tests {
 
     #[test]
     fn friction_helps_to_stop_and_not_to_start() {
-        let drive = |friction| Drive { steps: 0.5, friction };
+        let drive = |friction| Drive::new(0.5, friction);
         let stop = |friction: f64| drive(friction).step(40.0, 0.0).0;
         let start = |friction: f64| drive(friction).step(0.0, 40.0 + friction).0;
         assert!(stop(8.0) < 0.9 * stop(0.0), "{} {}", stop(8.0), stop(0.0));

@@ -69,7 +69,8 @@ impl Member {
     /// Returns the smooth process at a command, the mean of the nugget, and its standard deviation.
     fn parts(&self, command: [f64; 2]) -> [Motion<f64>; 3] {
         let command = self.nuggets.scale.percent(command);
-        let process = Motion::from_fn(|axis| self.process(&weights(command), axis));
+        let place = weights(command);
+        let process = Motion::from_fn(|axis| self.process(&place, axis));
         let known = self.nuggets.known(command, process);
         let mean = Motion::from_fn(|axis| {
             let of = &known[axis];

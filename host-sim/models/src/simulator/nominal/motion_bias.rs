@@ -60,8 +60,15 @@ pub const FEATURES: usize = 1 + 4 + 10 + 20 + 6 * (1 + 2 * KNOTS.len());
 impl MotionBias {
     /// Returns the correction of the networks' outputs for left, right, previous left and previous right command.
     pub fn correction(&self, speeds: &[f64; 4]) -> Motion<f64> {
-        let features = features(*speeds, self.scale.share());
-        self.weights.each_ref().map(|weights| weights.iter().zip(&features).map(|(w, f)| w * f).sum())
+        let Motion { forward, lateral, turn } = &self.weights;
+        let weights = forward.iter().zip(lateral).zip(turn);
+        // The three sums do not wait for each other.
+        let add = |sum: Motion<f64>, (((forward, lateral), turn), feature): (((&f64, &f64), &f64), &f64)| Motion {
+            forward: sum.forward + forward * feature,
+            lateral: sum.lateral + lateral * feature,
+            turn: sum.turn + turn * feature,
+        };
+        weights.zip(&features(*speeds, self.scale.share())).fold(Motion::ZERO, add)
     }
 }
 
