@@ -8,6 +8,7 @@ use std::thread;
 use std::time::Duration;
 
 use mindgap_tests::command::{Outcome, Sandbox, program};
+use mindgap_tests::form::short_or_long;
 use mindgap_tests::rooms::{challenge, robot, with_scene};
 
 /// Returns a process that runs the command on `count` ranks in a folder.
@@ -28,7 +29,7 @@ fn own_lines(outcome: &Outcome) -> Vec<&str> {
 fn same_at_any_number(prepared: &Sandbox, calls: &[&str]) {
     let threads = prepared.copy();
     let outputs: Vec<String> = calls.iter().map(|call| threads.run(call)).collect();
-    for count in [1, 2, 4] {
+    for count in short_or_long(vec![3], vec![1, 2, 4]) {
         let sandbox = prepared.copy();
         for (call, output) in calls.iter().zip(&outputs) {
             let outcome = sandbox.execute(ranks(&sandbox, count, call));

@@ -194,7 +194,8 @@ fn with_forty_runs() -> Sandbox {
 #[test]
 fn many_runs_of_the_same_robot_show_no_gap() {
     let sandbox = with_forty_runs();
-    sandbox.run("record --out many --runs 120 --seed 21");
+    let runs = short_or_long(60, 120);
+    sandbox.run(&format!("record --out many --runs {runs} --seed 21"));
     let said = sandbox.run("diagnose sim.json many");
     assert!(said.starts_with("No gap"), "{said}");
 }

@@ -5,6 +5,7 @@ use std::fs;
 use std::os::unix::fs::symlink;
 use std::os::unix::process::ExitStatusExt;
 use std::process::{Child, Command, Stdio};
+use std::sync::LazyLock;
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -19,10 +20,13 @@ const STUBBORN: &str = "trap '' TERM; echo $$ > begun; while :; do sleep 0.1; do
 
 /// Returns a folder in which a loop has planned its first trial.
 fn planned() -> Sandbox {
-    let sandbox = with_scene();
-    sandbox.write("robot.sh", "exit 3\n");
-    assert_eq!(looping(&sandbox).code, 1);
-    sandbox
+    static PLANNED: LazyLock<Sandbox> = LazyLock::new(|| {
+        let sandbox = with_scene();
+        sandbox.write("robot.sh", "exit 3\n");
+        assert_eq!(looping(&sandbox).code, 1);
+        sandbox
+    });
+    PLANNED.copy()
 }
 
 fn command(sandbox: &Sandbox, options: &str) -> Command {
@@ -178,7 +182,7 @@ fn words_of_the_command_may_contain_blanks() {
     assert_eq!(outcome.code, 0, "{}", outcome.err);
     assert!(sandbox.path().join("out/trial-1.csv").exists());
     for (command, problem) in [("sh 'robot.sh", "has an open quote"), ("''", "cannot be started"), (" ", "is empty")] {
-        let sandbox = with_scene();
+        let sandbox = planned();
         let mut call = sandbox.command(LOOP);
         call.args(["--robot", command]);
         let outcome = sandbox.execute(call);

@@ -1,7 +1,6 @@
 //! `mindgap diagnose --fleet`: one diagnosis per robot and a summary of all.
 
 use std::fs;
-use std::sync::LazyLock;
 
 use mindgap_tests::command::Sandbox;
 use mindgap_tests::rooms::trained;
@@ -9,18 +8,15 @@ use serde_json::Value;
 
 /// Returns a folder with the logs of six robots, two of them with a weak motor, a broken folder and a note.
 fn sandbox() -> Sandbox {
-    static WORKSHOP: LazyLock<Sandbox> = LazyLock::new(|| {
-        let sandbox = trained();
-        fs::create_dir_all(sandbox.path().join("fleet/broken")).unwrap();
-        for (name, effect) in [("a", ""), ("b", ""), ("c", WEAK), ("d", ""), ("e", ""), ("f", WEAK)] {
-            let seed = 20 + u32::from(name.as_bytes()[0]);
-            sandbox.run(&format!("record --out fleet/{name} --runs 6 --steps 25 --seed {seed} {effect}"));
-        }
-        sandbox.write("fleet/broken/run-000.csv", "t_ms\n");
-        sandbox.write("fleet/notes.txt", "which robot is whose");
-        sandbox
-    });
-    WORKSHOP.copy()
+    let sandbox = trained();
+    fs::create_dir_all(sandbox.path().join("fleet/broken")).unwrap();
+    for (name, effect) in [("a", ""), ("b", ""), ("c", WEAK), ("d", ""), ("e", ""), ("f", WEAK)] {
+        let seed = 20 + u32::from(name.as_bytes()[0]);
+        sandbox.run(&format!("record --out fleet/{name} --runs 6 --steps 25 --seed {seed} {effect}"));
+    }
+    sandbox.write("fleet/broken/run-000.csv", "t_ms\n");
+    sandbox.write("fleet/notes.txt", "which robot is whose");
+    sandbox
 }
 
 const WEAK: &str = "--effect motor_asymmetry=0.25";
@@ -30,9 +26,11 @@ fn ids<'a>(list: &'a Value, key: &str) -> Vec<&'a str> {
 }
 
 #[test]
-fn a_fleet_is_diagnosed_despite_a_broken_folder() {
+fn a_fleet_is_diagnosed_despite_a_broken_folder_and_alike_on_any_number_of_threads() {
     let sandbox = sandbox();
-    let outcome = sandbox.call("diagnose sim.json fleet --fleet out");
+    let outcome = sandbox.call_on_threads(2, "diagnose sim.json fleet --fleet out");
+    let alone = sandbox.call_on_threads(1, "diagnose sim.json fleet --fleet out-of-one");
+    assert!(outcome.out == alone.out && sandbox.files("out") == sandbox.files("out-of-one"));
     assert_eq!(outcome.code, 0, "{}", outcome.err);
     assert!(outcome.out.starts_with("6 of 7 robots diagnosed, 1 failed."), "{}", outcome.out);
     assert!(outcome.err.contains("broken is excluded: ") && outcome.err.contains("robot.toml"), "{}", outcome.err);
@@ -61,16 +59,6 @@ fn a_fleet_is_diagnosed_despite_a_broken_folder() {
     assert!(page.contains(r#"<a href="diagnoses/c.json">c</a>"#) && page.contains("broken"));
     assert!(sandbox.bytes("out/robots.parquet").starts_with(b"PAR1"));
     assert!(sandbox.run("info out/fleet.json").contains("the diagnosis of a fleet"));
-}
-
-#[test]
-fn a_fleet_is_diagnosed_alike_on_any_number_of_threads() {
-    let sandbox = sandbox();
-    for (threads, out) in [(1, "one"), (2, "two")] {
-        let outcome = sandbox.call_on_threads(threads, &format!("diagnose sim.json fleet --fleet {out}"));
-        assert_eq!(outcome.code, 0, "{}", outcome.err);
-    }
-    assert!(sandbox.files("one") == sandbox.files("two"));
 }
 
 #[test]

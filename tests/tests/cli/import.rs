@@ -141,7 +141,7 @@ fn several_runs_are_matched_to_their_tracks() {
     let of = |log: usize| report["logs"][log]["run"]["track"].as_str().map(str::to_owned);
     let tracks = ["track.csv", "long.csv", "long.csv", "track.csv"].map(|name| Some(name.to_owned()));
     assert_eq!([of(0), of(1), of(2), of(3)], tracks, "{said}");
-    sandbox.run("diagnose kinematic logs");
+    sandbox.run("check logs");
 }
 
 #[test]

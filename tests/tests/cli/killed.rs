@@ -27,7 +27,7 @@ const MAKE: &str = "challenge make --quick --cases 40 --seed 5 --out blind";
 
 /// Returns the number of kills of each command.
 fn kills() -> usize {
-    short_or_long(3, 200)
+    short_or_long(2, 200)
 }
 
 /// Kills a call at random moments and repeats it until it succeeds, then compares its files with those of an uninterrupted

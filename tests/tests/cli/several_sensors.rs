@@ -1,6 +1,7 @@
 //! Robots with several range sensors, each learned, evaluated, diagnosed and shown under its name.
 
 use mindgap_tests::command::Sandbox;
+use mindgap_tests::form::{short_or_long, spread};
 use mindgap_tests::range_sensors::{add, table};
 use mindgap_tests::rooms::SCENE;
 use serde_json::Value;
@@ -22,7 +23,7 @@ fn effects(diagnosis: &Value) -> Vec<(String, Option<String>)> {
 
 #[test]
 fn turned_sensor_is_named_and_the_other_is_not() {
-    let sandbox = with_left(24, 60.0);
+    let sandbox = with_left(16, 60.0);
     sandbox.run("train logs --out sim.json");
     sandbox.run("evaluate sim.json logs --json accuracy.json --html accuracy.html");
     let networks = &sandbox.json("accuracy.json")["networks"];
@@ -36,7 +37,7 @@ fn turned_sensor_is_named_and_the_other_is_not() {
     assert_eq!(sandbox.json("same.json")["verdict"], "no_gap");
 
     // The same motion, so that nothing but the sensor differs.
-    sandbox.run("record --out turned --runs 24 --seed 5");
+    sandbox.run("record --out turned --runs 16 --seed 5");
     add(&sandbox, "turned", "left", [60.0, 70.0]);
     let text = sandbox.run("diagnose sim.json turned --json turned.json --html turned.html --apply better.json");
     let turned = sandbox.json("turned.json");
@@ -60,7 +61,7 @@ fn turned_sensor_is_named_and_the_other_is_not() {
 
 #[test]
 fn sensors_are_shown_by_check_info_and_the_textbook() {
-    let sandbox = with_left(12, 70.0);
+    let sandbox = with_left(8, 70.0);
     let text = sandbox.run("check logs --json check.json");
     assert!(text.contains("sensor    left: reads"), "{text}");
     let holds = &sandbox.json("check.json")["holds"];
@@ -92,9 +93,10 @@ fn stick(sandbox: &Sandbox, runs: usize, column: &str) {
 
 #[test]
 fn a_stuck_sensor_is_withheld_alone() {
-    for (column, stuck, sound) in [("echo_left_cm", "left", "ultrasonic"), ("echo_cm", "ultrasonic", "left")] {
-        let sandbox = with_left(12, 60.0);
-        stick(&sandbox, 12, column);
+    let sensors = vec![("echo_left_cm", "left", "ultrasonic"), ("echo_cm", "ultrasonic", "left")];
+    for (column, stuck, sound) in spread(sensors, short_or_long(1, 2)) {
+        let sandbox = with_left(6, 60.0);
+        stick(&sandbox, 6, column);
         sandbox.run("diagnose kinematic logs --json gap.json");
         let gap = sandbox.json("gap.json");
         let withheld = gap["not_compared"].as_array().expect("a list");
@@ -109,8 +111,8 @@ fn a_stuck_sensor_is_withheld_alone() {
         let simulator = sandbox.run("info sim.json");
         assert!(simulator.contains(sound), "{simulator}");
     }
-    let sandbox = with_left(12, 60.0);
-    ["echo_cm", "echo_left_cm"].iter().for_each(|column| stick(&sandbox, 12, column));
+    let sandbox = with_left(6, 60.0);
+    ["echo_cm", "echo_left_cm"].iter().for_each(|column| stick(&sandbox, 6, column));
     assert!(sandbox.refused("train logs --out none.json").contains("the sensor is stuck"));
 }
 
@@ -194,7 +196,7 @@ fn impossible_sensors_are_refused_at_their_line() {
 
 #[test]
 fn columns_without_a_sensor_and_sensors_without_a_column_are_reported() {
-    let sandbox = with_left(12, 60.0);
+    let sandbox = with_left(6, 60.0);
     sandbox.edit("logs/run-003.csv", |text| text.replacen("echo_left_cm", "echo_right_cm", 1));
     let outcome = sandbox.call("diagnose kinematic logs --json diagnosis.json");
     assert_eq!(outcome.code, 0, "{outcome:?}");

@@ -65,7 +65,7 @@ fn late_and_losing() -> Logs {
         };
         Run { name: format!("run-{number:03}"), rows: (0..60).map(row).collect() }
     };
-    Logs { robot, scene: scene.clone(), runs: (0..16).map(run).collect() }
+    Logs { robot, scene: scene.clone(), runs: (0..12).map(run).collect() }
 }
 
 /// The same logs with room and poses turned about the origin, then shifted.

@@ -35,16 +35,16 @@ fn a_slow_robot_agrees_with_its_own_simulator() {
     let simulator = learned(&SLOW.logs(40, 31));
     let (dead_time_s, lag_s) = (0.4 * simulator.filter.dead_time_steps, 0.4 * simulator.filter.lag_steps);
     assert!((dead_time_s - 0.3).abs() < 0.02 && (lag_s - 0.3).abs() < 0.02, "{:?}", simulator.filter);
-    let again = against(&simulator, &SLOW.logs(24, 32));
+    let again = against(&simulator, &SLOW.logs(14, 32));
     assert_eq!(again.verdict, Verdict::NoGap, "{:?}", again.effects);
-    assert_weak_left(&against(&simulator, &MadeUp { left: 0.88, ..SLOW }.logs(24, 33)));
+    assert_weak_left(&against(&simulator, &MadeUp { left: 0.88, ..SLOW }.logs(14, 33)));
 }
 
 #[test]
 fn a_slower_or_faster_robot_differs_by_its_times() {
     let simulator = learned(&SLOW.logs(40, 31));
     for (dead_time_s, lag_s, cause, ms) in [(0.2, 0.3, "latency", -100.0), (0.3, 0.45, "inertia", 150.0)] {
-        let diagnosis = against(&simulator, &MadeUp { dead_time_s, lag_s, ..SLOW }.logs(24, 34));
+        let diagnosis = against(&simulator, &MadeUp { dead_time_s, lag_s, ..SLOW }.logs(14, 34));
         let first = diagnosis.effects.first().unwrap_or_else(|| panic!("{cause}: {:?}", diagnosis.verdict));
         assert_eq!(first.id, cause, "{:?}", diagnosis.effects);
         let found = first.parameters["ms"].as_f64().expect("a number");
@@ -62,10 +62,10 @@ fn a_ramp_is_learned_and_is_found_where_only_the_robot_has_one() {
     };
     // 60 cm/s² over a step of 0.4 s, of a reference speed of 41 cm/s.
     assert!((per_step * 41.0 / 0.4 - 60.0).abs() < 4.0, "{:?}", simulator.filter);
-    let again = against(&simulator, &ramped.logs(24, 36));
+    let again = against(&simulator, &ramped.logs(14, 36));
     assert!(again.effects.is_empty(), "{:?}", again.effects);
 
-    let logs = ramped.logs(24, 37);
+    let logs = ramped.logs(14, 37);
     let without = diagnose(kinematic::baseline(&logs), &logs).expect("poses");
     assert_eq!(without.effects.first().map(|effect| effect.id), Some("rate_limit"), "{:?}", without.effects);
 }
