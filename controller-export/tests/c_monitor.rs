@@ -15,8 +15,8 @@ use mindgap_core::fixed_network::{FixedNetwork, FixedScaling};
 use mindgap_core::folded::PowerSum;
 use mindgap_core::heapless::Vec as FixedVec;
 use mindgap_core::monitor::{
-    Alternative, Correction, Direction, Gains, HELD, Law, Monitor, NAT_BITS, Outcome, POINTS, Response, SIZES, Step,
-    TRAVELS, Whitening,
+    Alternative, CHANNELS, Correction, DIRECTIONS, FUNCTIONS, Factor, Gains, HELD, Law, Monitor, NAT_BITS, Outcome,
+    POINTS, SIZES, Step, TRAVELS, Whitening,
 };
 use mindgap_core::network::Activation;
 use mindgap_core::rand_core::{Rng, SeedableRng};
@@ -50,8 +50,8 @@ int main(void) {
 
 #[test]
 fn monitor_in_c_equals_the_core_to_the_bit() {
-    let (directions, functions) = (directions(), [functions(3), functions(11)]);
-    let law = law(&directions, &functions);
+    let functions = functions();
+    let law = law(&functions);
     let networks = networks();
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("c_monitor");
     fs::create_dir_all(&folder).expect("a folder");
@@ -129,7 +129,7 @@ fn life(law: &Law, [forward, turn]: &[FixedNetwork<4>; 2]) -> (String, String) {
             Outcome::Paused => 1,
             Outcome::Changed(_) => 2,
         };
-        let directions = (0..law.directions.len() as u8)
+        let directions = (0..DIRECTIONS as u8)
             .flat_map(|direction| (0..SIZES as u8).map(move |size| Alternative::Direction(direction, size)));
         for alternative in directions.chain([Alternative::Wider(0), Alternative::Wider(1)]) {
             let _ = write!(expected, "{} ", monitor.evidence(alternative));
@@ -154,24 +154,12 @@ fn networks() -> [FixedNetwork<4>; 2] {
     [network([0.9, 0.9, 0.1, 0.1], -3.0, 4), network([-2.2, 2.2, -0.2, 0.2], 0.0, 6)]
 }
 
-fn directions() -> [Direction; 10] {
-    std::array::from_fn(|i| {
-        let factor = |j: usize| ((i * 1037 + j * 1453) % 6000) as i16 - 3000;
-        Direction {
-            response: [Response::Travel, Response::Change, Response::Sign][i % 4 % 3],
-            forward: [0, 1].map(factor),
-            turn: [2, 3].map(factor),
-            grows: i == 9,
-            is_opposite: i % 3 == 2,
-        }
-    })
+fn functions() -> [[[i16; CHANNELS]; POINTS]; FUNCTIONS] {
+    let value = |f: usize, p: usize, seed: usize| ((f * 101 + p * seed) % 400) as i16 - 200;
+    std::array::from_fn(|f| std::array::from_fn(|p| [3, 11].map(|seed| value(f, p, seed))))
 }
 
-fn functions(seed: usize) -> [[i16; POINTS]; 6] {
-    std::array::from_fn(|f| std::array::from_fn(|p| ((f * 101 + p * seed) % 400) as i16 - 200))
-}
-
-fn law<'a>(directions: &'a [Direction], functions: &'a [[[i16; POINTS]; 6]; 2]) -> Law<'a> {
+fn law(functions: &[[[i16; CHANNELS]; POINTS]; FUNCTIONS]) -> Law<'_> {
     let gains = |n: usize| Gains {
         precision: 16_000 + 300 * n as i16,
         error: 4000 - 400 * n as i16,
@@ -180,20 +168,20 @@ fn law<'a>(directions: &'a [Direction], functions: &'a [[[i16; POINTS]; 6]; 2]) 
     };
     let gains = [std::array::from_fn::<_, HELD, _>(gains), std::array::from_fn(|n| gains(HELD - 1 - n))];
     let whitening = |shift: u8| Whitening {
-        scale: 800_000_000,
-        shift,
+        scale: Factor { factor: 24_414, shift, most: 21_303 },
         gains,
         by_travel: std::array::from_fn::<_, TRAVELS, _>(|t| 17_000 - 700 * t as i16),
     };
     Law {
-        share_of_command: 10_737_418,
-        travel: [16_777_216, 1_756_000],
+        share_of_command: Factor { factor: 20_972, shift: 9, most: 12_798 },
+        travel: [Factor { factor: 16_384, shift: 8, most: 4096 }, Factor { factor: 27_444, shift: 12, most: 2445 }],
         straight_travel: 752,
         step_ms: 400,
-        per_step_ms: 41_943,
-        correction: [0, 1].map(|i: usize| Correction { functions: &functions[i], shift: 3 + i as u8 }),
-        whitening: [whitening(2), whitening(4)],
-        directions,
+        per_step_ms: 1311,
+        correction: Correction { functions, shifts: [1, 2] },
+        whitening: [whitening(3), whitening(5)],
+        factors: [[2200, 1700], [5300, 900]],
+        sign: 1500,
         most_paused_steps: 3,
         threshold: 17 << NAT_BITS,
     }

@@ -7,10 +7,10 @@
 //! and the tracker's noise (it enters two consecutive steps with opposite signs). [`Whitening`] is the Kalman filter of
 //! this model, so an innovation is close to standard normal given the past.
 //!
-//! **Alternatives.** A [`Direction`] predicts by how many standard deviations λ a change of the robot would shift the
-//! innovations. λ depends on commands and predictions alone, so it is known before the measurement. Each direction is
-//! tried in [`SIZES`] sizes, and in both signs where both make sense. Each channel also has an alternative that says only
-//! that its residuals are [wider](WIDER).
+//! **Alternatives.** A direction predicts by how many standard deviations λ a change of the robot would shift the
+//! innovations. λ depends on commands and predictions alone, so it is known before the measurement. It is proportional to
+//! one of the [`SIGNALS`], which becomes weaker, or stronger where that makes sense. Each direction is tried in two
+//! [`SIZES`]. Each channel also has an alternative that says only that its residuals are [wider](WIDER).
 //!
 //! **Evidence.** One step multiplies the evidence of an alternative by the likelihood ratio exp(λz - λ²/2), whose
 //! expectation is at most one under the null. Innovations are clipped and a step counts at most [`MOST_NATS`], which only
@@ -29,23 +29,27 @@
 //!
 //! # Costs
 //!
-//! Everything is in integers, and no number is wider than 32 bits but for five products. A [`Law`] is a constant in flash;
-//! a [`Monitor`] is the state in RAM, 256 bytes at most.
+//! Everything is in integers, and no product is wider than 32 bits: numbers first lose as many bits as their [`Factor`] does
+//! not need. Each response of the wheels is filtered once per channel, and directions share the results. Functions that are
+//! not inlined keep their numbers in the few registers of a small processor. A [`Law`] is a constant in flash; a
+//! [`Monitor`] is the state in RAM, 256 bytes at most.
 
 mod alternatives;
 mod correction;
+mod factor;
 mod whitening;
 
 use fixed::types::I16F16;
 
-use crate::fixed_point::product;
 pub use alternatives::{
-    ALTERNATIVES, Alternative, Direction, MOST_DIRECTIONS, MOST_FACTOR, MOST_NATS, Response, SIZES, WIDER,
+    ALTERNATIVES, Alternative, DIRECTIONS, HAS_OPPOSITE, LARGER, MOST_FACTOR, MOST_NATS, MOST_SIGN, RESPONSES, SIGNALS,
+    SIZES, WIDER,
 };
-pub use correction::{Correction, POINTS};
+pub use correction::{Correction, FUNCTIONS, MOST_SHIFT, POINTS};
+pub use factor::{FACTOR_BITS, Factor};
 pub use whitening::{Gains, HELD, TRAVELS, Whitening};
 
-use alternatives::{Alternatives, Responses, Weights};
+use alternatives::{Alternatives, MOST_RUN_STEPS, Travel};
 use whitening::Filter;
 
 /// Channels that the monitor compares: the way forward and the turn.
@@ -54,6 +58,10 @@ pub const CHANNELS: usize = 2;
 pub const INNOVATION_BITS: u32 = 10;
 /// Fractional bits of shares of full speed.
 pub const SHARE_BITS: u32 = 14;
+/// Fractional bits of residuals, in cm and degrees.
+pub const RESIDUAL_BITS: u32 = 14;
+/// Fractional bits of the travel of wheels.
+pub const TRAVEL_BITS: u32 = 12;
 /// Fractional bits of evidence, in nats.
 pub const NAT_BITS: u32 = 10;
 /// Number of measured steps after which one more step may be paused.
@@ -64,23 +72,27 @@ const ABSURD: i32 = 12 << INNOVATION_BITS;
 /// Everything that a monitor knows about an unchanged robot besides its networks. A host computes it from a simulator file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Law<'a> {
-    /// Factor from a command in Q16.16 to a share of full speed, with 30 fractional bits.
-    pub share_of_command: i32,
-    /// Factors that make wheel travel of predictions in Q16.16: of half the way forward, and of the turn at a wheel. Travel
-    /// at full speed is one; both have 32 - 16 + 12 fractional bits.
-    pub travel: [i32; CHANNELS],
-    /// Difference of both wheels' travel, with 12 fractional bits, up to which a robot has gone straight.
-    pub straight_travel: i32,
+    /// Makes a share of full speed with [`SHARE_BITS`] of a command in Q16.16; less than one.
+    pub share_of_command: Factor,
+    /// Make wheel travel with [`TRAVEL_BITS`] of predictions in Q16.16: of half the way forward, and of the turn at a wheel; at most
+    /// one, which is travel at full speed.
+    pub travel: [Factor; CHANNELS],
+    /// Difference of both wheels' travel, with [`TRAVEL_BITS`], up to which a robot has gone straight.
+    pub straight_travel: i16,
     /// Nominal duration of a step, ms.
     pub step_ms: u16,
-    /// 2^24 divided by `step_ms`.
-    pub per_step_ms: i32,
-    /// What is added to the predictions of the networks, by channel.
-    pub correction: [Correction<'a>; CHANNELS],
+    /// 2^19 divided by `step_ms`.
+    pub per_step_ms: i16,
+    /// What is added to the predictions of the networks.
+    pub correction: Correction<'a>,
     /// How residuals become innovations, by channel.
     pub whitening: [Whitening; CHANNELS],
-    /// Directions in which the robot may change, at most [`MOST_DIRECTIONS`].
-    pub directions: &'a [Direction],
+    /// By how many units of residuals each response of one wheel shifts them in each channel if its smaller alternative is right,
+    /// with [`TRAVEL_BITS`]; at most [`MOST_FACTOR`]. In the turn the left wheel has the opposite sign.
+    pub factors: [[i16; RESPONSES]; CHANNELS],
+    /// The sign of a wheel's travel, which has the factor of that, with [`TRAVEL_BITS`]; at most [`MOST_SIGN`]. It is less
+    /// where a wheel hardly moves.
+    pub sign: i16,
     /// Steps without evidence in a row that a failing tracker may cause.
     pub most_paused_steps: u8,
     /// Evidence at which the monitor raises an alarm, in nats with [`NAT_BITS`] fractional bits.
@@ -107,10 +119,10 @@ const _: () = assert!(core::mem::size_of::<Monitor>() <= 256, "the state of a mo
 pub struct Monitor {
     alternatives: Alternatives,
     filters: [Filter; CHANNELS],
-    /// Travel of the wheels in the step before.
-    travel_before: [i32; 2],
-    /// Steps since the run began.
-    run_steps: u16,
+    /// Sum and difference of the travel of both wheels in the step before.
+    travel_before: [i16; 2],
+    /// Steps since the run began, as far as they count.
+    run_steps: u8,
     /// Steps for which the present command has been held.
     held_steps: u8,
     /// Whether nothing is known of the tracker's error.
@@ -120,7 +132,8 @@ pub struct Monitor {
     alarm: Option<Alarm>,
 }
 
-/// The first alarm of a monitor.
+/// The first alarm of a monitor. It is copied as two words.
+#[repr(align(4))]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Alarm {
@@ -166,52 +179,66 @@ impl Monitor {
     }
 
     /// Compares a step with the law.
+    #[inline(never)]
     pub fn step(&mut self, law: &Law, step: &Step) -> Outcome {
+        let is_compared = self.compare(law, step);
+        match self.alarm {
+            Some(alarm) => Outcome::Changed(alarm),
+            None if is_compared => Outcome::Quiet,
+            None => Outcome::Paused,
+        }
+    }
+
+    /// Returns whether the step added evidence.
+    fn compare(&mut self, law: &Law, step: &Step) -> bool {
         let [left, right, left_before, right_before] = step.commands;
-        let is_held = (left, right) == (left_before, right_before);
-        self.held_steps = if is_held { self.held_steps.saturating_add(1).min(HELD as u8 - 1) } else { 0 };
-        self.run_steps = self.run_steps.saturating_add(1);
-        let travel = travel(law, step.predicted);
-        let responses = Responses::new(travel, self.travel_before, self.run_steps);
-        let [turned, turn] = [self.travel_before, travel].map(|[left, right]| (right - left).abs());
-        let sum = (travel[0] + travel[1]).abs();
-        self.travel_before = travel;
+        let is_held = left == left_before && right == right_before;
+        let held_steps = if is_held { self.held_steps.wrapping_add(1).min(HELD as u8 - 1) } else { 0 };
+        self.held_steps = held_steps;
+        self.run_steps = self.run_steps.wrapping_add(1).min(MOST_RUN_STEPS);
+        let travel = Travel::new(law, step.predicted, &mut self.travel_before);
         if !is_held {
             self.filters.iter_mut().for_each(Filter::change_command);
         }
-        let has_turned = self.is_fresh || turned > law.straight_travel;
+        let is_fresh = self.is_fresh;
+        self.is_fresh = false;
+        let straight = i32::from(law.straight_travel);
+        let has_turned = is_fresh || !(-straight..=straight).contains(&travel.across_before);
         if has_turned {
             // The turn itself has no axis that could turn.
             self.filters[0].forget_tracker();
         }
-        let held = usize::from(self.held_steps).min(HELD - 1);
+        let held = usize::from(held_steps);
         let gains = [
             &law.whitening[0].gains[usize::from(has_turned)][held],
-            &law.whitening[1].gains[usize::from(self.is_fresh)][held],
+            &law.whitening[1].gains[usize::from(is_fresh)][held],
         ];
-        self.is_fresh = false;
-        let widths = [law.whitening[0].width(sum), law.whitening[1].width(turn)];
-        let weights = [self.filters[0].weights(gains[0], widths[0]), self.filters[1].weights(gains[1], widths[1])];
-        let Some(innovations) = self.innovations(law, step, gains, weights) else {
-            return self.alarm.map_or(Outcome::Paused, Outcome::Changed);
+        let Some(residuals) = residuals(law, step) else {
+            self.lose_track();
+            return false;
         };
-        // A lasting shift is partly taken for the simulator's own error.
-        let lasting = |weights: Weights, gains: &Gains| Weights {
-            residual: (weights.residual * i32::from(gains.shift)) >> 14,
-            ..weights
-        };
-        let weights = [lasting(weights[0], gains[0]), lasting(weights[1], gains[1])];
-        if let Some((alternative, after_steps)) =
-            alternatives::gather(&mut self.alternatives, law, &responses, innovations, weights, self.held_steps)
-        {
-            self.alarm.get_or_insert(Alarm { alternative, after_steps });
+        let [forward, turn] = &self.filters;
+        let forward = forward.innovation(&law.whitening[0], gains[0], travel.along, residuals[0]);
+        let turn = turn.innovation(&law.whitening[1], gains[1], travel.across, residuals[1]);
+        let is_absurd = |innovation: i32| !(-ABSURD..=ABSURD).contains(&innovation);
+        if self.pauses_left > 0 && (is_absurd(forward.0) || is_absurd(turn.0)) {
+            self.pauses_left -= 1;
+            self.lose_track();
+            return false;
         }
-        self.alarm.map_or(Outcome::Quiet, Outcome::Changed)
+        self.regain(law);
+        let forward = self.filters[0].update(forward, gains[0]);
+        let turn = self.filters[1].update(turn, gains[1]);
+        let alarm = self.alternatives.gather(law, &travel, self.run_steps, [&forward, &turn], held_steps);
+        if self.alarm.is_none() {
+            self.alarm = alarm;
+        }
+        true
     }
 
     /// Returns the evidence of an alternative in nats, with [`NAT_BITS`] fractional bits; zero for one that does not exist.
     pub fn evidence(&self, alternative: Alternative) -> u16 {
-        self.alternatives.tracks.get(alternative.index()).map_or(0, |track| track.evidence)
+        self.alternatives.evidence(alternative).unwrap_or(0)
     }
 
     /// Returns the first alarm, if there has been one.
@@ -219,45 +246,8 @@ impl Monitor {
         self.alarm
     }
 
-    /// Returns the innovations of a step, clipped; `None` if it is paused.
-    fn innovations(
-        &mut self,
-        law: &Law,
-        step: &Step,
-        gains: [&Gains; CHANNELS],
-        weights: [Weights; CHANNELS],
-    ) -> Option<[i32; CHANNELS]> {
-        let late = i32::from(law.step_ms) - i32::from(step.duration_ms);
-        let Some(measured) = step.measured.filter(|_| 2 * late.abs() <= i32::from(law.step_ms)) else {
-            self.lose_track();
-            return None;
-        };
-        let shares = step.commands.map(|command| (product(command.to_bits(), law.share_of_command) >> 32) as i32);
-        let corrections = correction::corrections(&law.correction, shares);
-        // First order in the deviation of the duration, which is small; with 14 fractional bits.
-        let stretch = late.saturating_mul(law.per_step_ms) >> 10;
-        let innovation = |channel: usize, measured: I16F16, predicted: I16F16| {
-            let measured = measured.to_bits();
-            let scaled = measured.saturating_add((product(measured, stretch) >> 14) as i32);
-            let predicted = predicted.to_bits().saturating_add(corrections[channel]);
-            let residual = law.whitening[channel].standardised(scaled.saturating_sub(predicted));
-            self.filters[channel].innovation(residual, weights[channel])
-        };
-        let ([forward, turn], [predicted_forward, predicted_turn]) = (measured, step.predicted);
-        let innovations = [innovation(0, forward, predicted_forward), innovation(1, turn, predicted_turn)];
-        if innovations.iter().any(|z| z.abs() > ABSURD) && self.pauses_left > 0 {
-            self.pauses_left -= 1;
-            self.lose_track();
-            return None;
-        }
-        self.regain(law);
-        let innovations = innovations.map(alternatives::clipped);
-        self.filters[0].update(innovations[0], gains[0]);
-        self.filters[1].update(innovations[1], gains[1]);
-        Some(innovations)
-    }
-
     /// Forgets what was known of the tracker's error.
+    #[inline(never)]
     fn lose_track(&mut self) {
         self.filters = [Filter::default(); CHANNELS];
         self.held_steps = 0;
@@ -265,7 +255,7 @@ impl Monitor {
     }
 
     fn regain(&mut self, law: &Law) {
-        self.until_regained = self.until_regained.saturating_sub(1);
+        self.until_regained = self.until_regained.wrapping_sub(1);
         if self.until_regained == 0 {
             self.until_regained = REGAINED_AFTER;
             self.pauses_left = self.pauses_left.saturating_add(1).min(law.most_paused_steps);
@@ -273,12 +263,24 @@ impl Monitor {
     }
 }
 
-/// Returns the predicted travel of the left and the right wheel, with 12 fractional bits.
-fn travel(law: &Law, [forward, turn]: [I16F16; CHANNELS]) -> [i32; 2] {
-    let along = (product(forward.to_bits(), law.travel[0]) >> 32) as i32;
-    let across = (product(turn.to_bits(), law.travel[1]) >> 32) as i32;
-    const MOST: i32 = 2 << 12;
-    [along.saturating_sub(across), along.saturating_add(across)].map(|travel| travel.clamp(-MOST, MOST))
+/// Returns the residuals of a step with [`RESIDUAL_BITS`]; `None` without a measurement, or if its duration is far off.
+#[inline(never)]
+fn residuals(law: &Law, step: &Step) -> Option<[i32; CHANNELS]> {
+    let late = i32::from(law.step_ms) - i32::from(step.duration_ms);
+    let measured = step.measured?;
+    let most_late = i32::from(law.step_ms / 2);
+    if !(-most_late..=most_late).contains(&late) {
+        return None;
+    }
+    let mut residuals = law.correction.of(law.share_of_command, &step.commands);
+    // First order in the deviation of the duration, which is small.
+    let stretch = (late * i32::from(law.per_step_ms)) >> 7;
+    for (residual, (measured, predicted)) in residuals.iter_mut().zip(measured.into_iter().zip(step.predicted)) {
+        let (measured, predicted) = (measured.to_bits(), predicted.to_bits());
+        let stretched = ((measured >> 12) * stretch) >> (16 - RESIDUAL_BITS);
+        *residual = (measured >> (16 - RESIDUAL_BITS)) - (predicted >> (16 - RESIDUAL_BITS)) + stretched - *residual;
+    }
+    Some(residuals)
 }
 
 #[cfg(test)]

@@ -1,240 +1,309 @@
 //! Alternatives to an unchanged robot, and their evidence.
+//!
+//! Each response of the wheels is filtered once per channel. Directions add and scale what comes out.
 
-use super::{CHANNELS, INNOVATION_BITS, Law, NAT_BITS};
+use core::ptr;
 
-/// Largest number of directions.
-pub const MOST_DIRECTIONS: usize = 10;
-/// Sizes in which each direction is tried: one, two and four times its unit.
-pub const SIZES: usize = 3;
+use fixed::types::I16F16;
+
+use super::whitening::Innovation;
+use super::{Alarm, CHANNELS, INNOVATION_BITS, Law, NAT_BITS};
+
+/// Signals that a change of the robot may be proportional to, by number: travel of the left wheel, of the right wheel and of
+/// both, the turn that this makes, change of the travel of both since the step before, its sign, and the travel of both times
+/// the time since the run began, which is one after 32 steps.
+pub const SIGNALS: usize = 7;
+/// Number of directions: each signal becomes weaker; those of both wheels, of the turn and of the change also stronger, which
+/// is the next direction.
+pub const DIRECTIONS: usize = 10;
+/// Whether a signal may also become stronger.
+pub const HAS_OPPOSITE: [bool; SIGNALS] = [false, false, true, true, true, false, false];
+/// Sizes in which each direction is tried.
+pub const SIZES: usize = 2;
+/// By how much the larger size is larger.
+pub const LARGER: i32 = 3;
 /// Number of alternatives: directions in all sizes, and wider residuals of each channel.
-pub const ALTERNATIVES: usize = MOST_DIRECTIONS * SIZES + CHANNELS;
+pub const ALTERNATIVES: usize = DIRECTIONS * SIZES + CHANNELS;
 /// The most that one step adds to evidence, nats.
 pub const MOST_NATS: i32 = 6;
-/// The largest factor of a direction, so that sums of products have room.
+/// Responses of the wheels with a factor, by number: their travel, and its change since the step before.
+pub const RESPONSES: usize = 2;
+/// The largest factor of a response, so that sums of products have room.
 pub const MOST_FACTOR: i16 = 8191;
+/// The largest sign of a travel, for the same reason.
+pub const MOST_SIGN: i16 = 8191;
+/// [`MOST_NATS`] with [`NAT_BITS`].
+const MOST: i32 = MOST_NATS << NAT_BITS;
 /// Factor by which residuals scatter more under the alternative that says only that.
 pub const WIDER: f64 = 2.0;
 
-/// Innovations count at most this much.
-const CLIP: i32 = 6 << INNOVATION_BITS;
-/// No direction predicts a larger shift, so that squares have room.
-const MOST_SHIFT: i32 = 8 << INNOVATION_BITS;
-/// In wider residuals innovations count at most this much.
-const WIDER_CLIP: i32 = 4 << INNOVATION_BITS;
-/// (1 - 1/2²)/2 and ln 2, with 10 and 20 fractional bits.
-const WIDER_SLOPE: i32 = 384;
-const WIDER_NATS: i32 = 726_817;
-
-/// A way in which the robot may change, and by how many units of residuals its smallest alternative then shifts them.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Direction {
-    /// What the shift is proportional to.
-    pub response: Response,
-    /// Shift of forward by the response of the left and of the right wheel, with 12 fractional bits; at most
-    /// [`MOST_FACTOR`].
-    pub forward: [i16; 2],
-    /// The same of the turn.
-    pub turn: [i16; 2],
-    /// Whether the shift grows with the time since the run began: it is that after 64 steps.
-    pub grows: bool,
-    /// Whether this is the opposite of the direction before, whose other fields it has. It is cheaper that way.
-    pub is_opposite: bool,
-}
-
-/// What the shift of a direction is proportional to, for each wheel. Travel at full speed is one.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Response {
-    /// Its travel.
-    Travel,
-    /// The change of its travel since the step before.
-    Change,
-    /// The sign of its travel.
-    Sign,
-}
+/// No response shifts innovations more, so that squares have room.
+const MOST_SHIFT: i32 = 2 << INNOVATION_BITS;
+/// A signal that grows does so for this number of steps, for the same reason.
+pub const MOST_RUN_STEPS: u8 = 127;
+/// Number of steps after which it is as large as the travel of both wheels, as a power of two.
+const FADING_BITS: u32 = 5;
+/// In wider residuals innovations count at most this much, as a square.
+const WIDER_SQUARE: i32 = 1 << (4 + 2 * INNOVATION_BITS);
+/// (1 - 1/2²)/2 with 3 fractional bits.
+const WIDER_SLOPE: i32 = 3;
+const WIDER_BITS: u32 = 3 + 2 * INNOVATION_BITS;
+/// ln 2 with these.
+const WIDER_NATS: i32 = 5_814_540;
 
 /// An alternative by its number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Alternative {
-    /// A direction, and its size as a power of two.
+    /// A direction, and the number of its size.
     Direction(u8, u8),
     /// Residuals of a channel scatter more.
     Wider(u8),
 }
 
-/// The evidence of one alternative.
+/// The evidence of one alternative. It is copied as one word.
+#[repr(align(4))]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Track {
     /// In nats, with [`NAT_BITS`] fractional bits.
     pub evidence: u16,
     /// Number of measured steps, modulo 2^16, before those that the evidence is from.
-    pub restarted: u16,
+    restarted: u16,
 }
+
+/// Responses, filtered for a channel or not: change of both wheels, travel of the left and of the right one, and sign of both.
+type Responses<T> = [T; 4];
 
 /// The state of all alternatives.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Alternatives {
-    pub tracks: [Track; ALTERNATIVES],
-    /// Shifts of the last innovations by the smallest alternative of each direction.
-    last_shifts: [[i16; CHANNELS]; MOST_DIRECTIONS],
+    /// By direction and size; in the end those of wider residuals, by channel.
+    tracks: [[Track; SIZES]; DIRECTIONS + 1],
+    /// Shifts of the last innovations by each response.
+    shifts: [Responses<i16>; CHANNELS],
     /// Number of measured steps, modulo 2^16.
     steps: u16,
 }
 
-/// How an innovation follows from residuals, and so its shift from theirs; with 14 fractional bits.
-#[derive(Clone, Copy)]
-pub struct Weights {
-    /// Of the shift of this residual.
-    pub residual: i32,
-    /// Of the shift of the last innovation.
-    pub last: i32,
+/// Predicted travel of the wheels in a step, with [`TRAVEL_BITS`].
+pub struct Travel {
+    /// What it shifts in each channel.
+    responses: [Responses<i32>; CHANNELS],
+    /// Sum of both wheels, without sign.
+    pub along: i32,
+    /// Difference of both wheels, without sign.
+    pub across: i32,
+    /// Difference in the step before, with its sign.
+    pub across_before: i32,
 }
 
-impl Weights {
-    /// Returns by how much a shift of the residual shifts the innovation, and remembers it in `last`.
-    #[inline(always)]
-    fn shift(&self, residual: i32, last: &mut i16) -> i32 {
-        let shift = (residual * self.residual + i32::from(*last) * self.last) >> 14;
-        let shift = shift.clamp(-MOST_SHIFT, MOST_SHIFT);
-        *last = shift as i16;
-        shift
-    }
-}
-
-/// What directions depend on: for each response that of the left and of the right wheel, with 12 fractional bits.
-pub struct Responses {
-    wheels: [[i32; 2]; 3],
-    run_steps: i32,
-}
-
-impl Alternatives {
-    /// Returns the state without evidence.
-    pub fn new() -> Self {
-        let (tracks, last_shifts) = ([Track::default(); ALTERNATIVES], [[0; CHANNELS]; MOST_DIRECTIONS]);
-        Alternatives { tracks, last_shifts, steps: 0 }
+impl Travel {
+    /// Returns the travel of a step, and replaces that of the wheels in the step before.
+    #[inline(never)]
+    pub fn new(law: &Law, [forward, turn]: [I16F16; CHANNELS], before: &mut [i16; 2]) -> Self {
+        let [along, across] = [law.travel[0].times(forward.to_bits()), law.travel[1].times(turn.to_bits())];
+        let (left, right) = (along - across, along + across);
+        let [along_before, across_before] = [before[0], before[1]].map(i32::from);
+        let (along, across) = (right + left, right - left);
+        *before = [along as i16, across as i16];
+        let most = i32::from(law.sign);
+        let sign = |travel: i32| (travel << 6).min(most).max(-most);
+        let (left_sign, right_sign) = (sign(left), sign(right));
+        Travel {
+            // In the turn the left wheel has the opposite sign.
+            responses: [
+                [along - along_before, left, right, right_sign + left_sign],
+                [across - across_before, -left, right, right_sign - left_sign],
+            ],
+            along: along.abs(),
+            across: across.abs(),
+            across_before,
+        }
     }
 }
 
 impl Alternative {
     /// Returns its place among all alternatives.
     pub fn index(self) -> usize {
+        let (row, column) = self.place();
+        row * SIZES + column
+    }
+
+    fn at(index: usize) -> Self {
+        let (row, column) = ((index / SIZES) as u8, (index % SIZES) as u8);
+        if usize::from(row) < DIRECTIONS { Alternative::Direction(row, column) } else { Alternative::Wider(column) }
+    }
+
+    fn place(self) -> (usize, usize) {
         match self {
-            Alternative::Direction(direction, size) => usize::from(direction) * SIZES + usize::from(size),
-            Alternative::Wider(channel) => MOST_DIRECTIONS * SIZES + usize::from(channel),
+            Alternative::Direction(direction, size) => (direction.into(), size.into()),
+            Alternative::Wider(channel) => (DIRECTIONS, channel.into()),
         }
     }
 }
 
-impl Responses {
-    /// Returns the responses for the travel of the wheels in this step and the one before.
-    pub fn new([left, right]: [i32; 2], before: [i32; 2], run_steps: u16) -> Self {
-        const MOVES: i32 = 1 << 6;
-        let sign = |travel: i32| if travel.abs() < MOVES { 0 } else { travel.signum() << 12 };
-        let wheels = [[left, right], [left - before[0], right - before[1]], [sign(left), sign(right)]];
-        Responses { wheels, run_steps: i32::from(run_steps.min(255)) }
+impl Alternatives {
+    /// Returns the state without evidence.
+    pub fn new() -> Self {
+        let tracks = [[Track::default(); SIZES]; DIRECTIONS + 1];
+        Alternatives { tracks, shifts: [[0; 4]; CHANNELS], steps: 0 }
     }
 
-    /// Returns by how much a direction shifts the residuals of each channel, in units of residuals.
-    #[inline(always)]
-    fn shifts(&self, direction: &Direction) -> [i32; CHANNELS] {
-        let [mut left, mut right] = match direction.response {
-            Response::Travel => self.wheels[0],
-            Response::Change => self.wheels[1],
-            Response::Sign => self.wheels[2],
-        };
-        if direction.grows {
-            (left, right) = ((left * self.run_steps) >> 6, (right * self.run_steps) >> 6);
-        }
-        let shift = |factors: [i16; 2]| {
-            (left * i32::from(factors[0]) + right * i32::from(factors[1])) >> (24 - INNOVATION_BITS)
-        };
-        [shift(direction.forward), shift(direction.turn)]
+    /// Returns the evidence of an alternative, if it exists.
+    pub fn evidence(&self, alternative: Alternative) -> Option<u16> {
+        let (row, column) = alternative.place();
+        let is_direction = matches!(alternative, Alternative::Direction(..));
+        let row = self.tracks.get(row).filter(|_| is_direction == (row < DIRECTIONS))?;
+        Some(row.get(column)?.evidence)
     }
-}
 
-/// Returns an innovation as far as it counts.
-pub fn clipped(innovation: i32) -> i32 {
-    innovation.clamp(-CLIP, CLIP)
-}
-
-/// Adds a step to the evidence of all alternatives. Returns the strongest of those above the threshold, if any, and the
-/// number of steps since it was restarted. `held_steps` is the number of steps for which the command has been held: where the
-/// networks are wrong about a command, they are wrong in all its steps, so each adds at most half as much to the evidence of
-/// wider residuals as the one before.
-pub fn gather(
-    state: &mut Alternatives,
-    law: &Law,
-    responses: &Responses,
-    innovations: [i32; CHANNELS],
-    weights: [Weights; CHANNELS],
-    held_steps: u8,
-) -> Option<(Alternative, u16)> {
-    let now = state.steps.wrapping_add(1);
-    state.steps = now;
-    let mut strongest = Strongest { evidence: law.threshold, alternative: None };
-    let (of_directions, of_channels) = state.tracks.split_at_mut(MOST_DIRECTIONS * SIZES);
-    let of_directions = of_directions.as_chunks_mut::<SIZES>().0.iter_mut().zip(&mut state.last_shifts);
-    let (mut score, mut half) = (0, 0);
-    for (d, (direction, (tracks, last_shifts))) in law.directions.iter().zip(of_directions).enumerate() {
-        if direction.is_opposite {
-            score = -score;
-        } else {
-            let ([forward, turn], [last_forward, last_turn]) = (responses.shifts(direction), last_shifts);
-            let forward = weights[0].shift(forward, last_forward);
-            let turn = weights[1].shift(turn, last_turn);
-            score = forward * innovations[0] + turn * innovations[1];
-            half = (forward * forward + turn * turn) >> 1;
-        }
-        if score <= half && tracks.iter().all(|track| track.evidence == 0) {
-            continue;
-        }
-        for (size, track) in tracks.iter_mut().enumerate() {
-            // Half of the square grows twice as fast.
-            let nats = (score - (half << size)) >> (2 * INNOVATION_BITS - NAT_BITS - size as u32);
-            if track.add(nats, now) >= strongest.evidence {
-                strongest.set(track, Alternative::Direction(d as u8, size as u8), now);
-            }
-        }
+    fn alarm(&self, strongest: &Strongest) -> Alarm {
+        let first = ptr::from_ref(&self.tracks).addr();
+        let alternative = Alternative::at(strongest.address.wrapping_sub(first) / size_of::<Track>());
+        Alarm { alternative, after_steps: self.steps.wrapping_sub(strongest.restarted) }
     }
-    for (channel, (track, innovation)) in of_channels.iter_mut().zip(innovations).enumerate() {
-        let z = innovation.clamp(-WIDER_CLIP, WIDER_CLIP);
-        let nats = (((z * z) >> 10) * WIDER_SLOPE - WIDER_NATS) >> (2 * INNOVATION_BITS - NAT_BITS);
-        let nats = if nats > 0 { nats >> held_steps } else { nats };
-        if track.add(nats, now) >= strongest.evidence {
-            strongest.set(track, Alternative::Wider(channel as u8), now);
-        }
-    }
-    strongest.alternative
-}
 
-/// The strongest alternative so far.
-struct Strongest {
-    evidence: u16,
-    alternative: Option<(Alternative, u16)>,
-}
-
-impl Strongest {
+    /// Adds a step to the evidence of all alternatives. Returns an alarm for the strongest of those that reach the threshold.
+    /// `held_steps` is the number of steps for which the command has been held: where the networks are wrong about a command, they
+    /// are wrong in all its steps, so each adds at most half as much to the evidence of wider residuals as the one before.
     #[inline(never)]
-    fn set(&mut self, track: &Track, alternative: Alternative, now: u16) {
-        let steps = now.wrapping_sub(track.restarted);
-        *self = Strongest { evidence: track.evidence, alternative: Some((alternative, steps)) };
+    pub fn gather(
+        &mut self,
+        law: &Law,
+        travel: &Travel,
+        run_steps: u8,
+        [forward, turn]: [&Innovation; CHANNELS],
+        held_steps: u8,
+    ) -> Option<Alarm> {
+        filter(&mut self.shifts[0], law.factors[0], forward, &travel.responses[0]);
+        filter(&mut self.shifts[1], law.factors[1], turn, &travel.responses[1]);
+        self.steps = self.steps.wrapping_add(1);
+        let mut step = Gathered {
+            innovations: [forward.clipped, turn.clipped],
+            restarted: Track { evidence: 0, restarted: self.steps },
+            strongest: Strongest { evidence: law.threshold, restarted: 0, address: 0 },
+        };
+        let [left, right, with_opposite @ .., friction, fades, wider] = &mut self.tracks;
+        let ([of_both, of_turn, of_change], _) = with_opposite.as_chunks_mut() else { return None };
+        step.add_wider(&mut wider[0], forward.clipped, held_steps);
+        step.add_wider(&mut wider[1], turn.clipped, held_steps);
+        let [forward, turn] = &self.shifts;
+        step.weaker_or_stronger(of_change, forward[0].into(), turn[0].into());
+        step.weaker(left, forward[1].into(), turn[1].into());
+        step.weaker(right, forward[2].into(), turn[2].into());
+        step.weaker(friction, forward[3].into(), turn[3].into());
+        let (forward, turn) = (sum(forward[1], forward[2]), sum(turn[1], turn[2]));
+        step.weaker_or_stronger(of_both, forward, turn);
+        step.weaker_or_stronger(of_turn, 0, turn);
+        let run_steps = i32::from(run_steps);
+        step.weaker(fades, (forward * run_steps) >> FADING_BITS, (turn * run_steps) >> FADING_BITS);
+        (step.strongest.address != 0).then(|| self.alarm(&step.strongest))
     }
 }
 
-impl Track {
-    /// Adds nats, and restarts at zero. Returns the evidence.
+/// Computes by how much each response shifts the innovation of a channel, with [`INNOVATION_BITS`].
+#[inline(never)]
+fn filter(shifts: &mut Responses<i16>, factors: [i16; RESPONSES], innovation: &Innovation, responses: &Responses<i32>) {
+    let [travel, change] = factors.map(|factor| (i32::from(factor) * innovation.of_residual) >> 14);
+    for ((shift, response), of_response) in shifts.iter_mut().zip(responses).zip([change, travel, travel, travel]) {
+        let shifted = (response * of_response + i32::from(*shift) * innovation.of_last) >> 14;
+        *shift = shifted.clamp(-MOST_SHIFT, MOST_SHIFT) as i16;
+    }
+}
+
+/// Returns what the larger size adds. The drift is that of a square.
+#[inline(always)]
+fn larger(score: i32, drift: i32) -> i32 {
+    LARGER * (score + LARGER * drift)
+}
+
+fn sum(left: i16, right: i16) -> i32 {
+    i32::from(left) + i32::from(right)
+}
+
+/// What a step adds to evidence.
+struct Gathered {
+    innovations: [i32; CHANNELS],
+    /// What is restarted in this step.
+    restarted: Track,
+    strongest: Strongest,
+}
+
+/// The strongest alternative so far of those that reach the threshold.
+struct Strongest {
+    /// Its evidence, or the threshold.
+    evidence: u16,
+    restarted: u16,
+    /// Where its track is in memory, or zero. Its number would cost instructions in each step.
+    address: usize,
+}
+
+impl Gathered {
+    #[inline(never)]
+    fn weaker(&mut self, tracks: &mut [Track; SIZES], forward: i32, turn: i32) {
+        let (score, drift) = self.score(forward, turn);
+        self.add(tracks, -score, drift);
+    }
+
+    #[inline(never)]
+    fn weaker_or_stronger(&mut self, [weaker, stronger]: &mut [[Track; SIZES]; 2], forward: i32, turn: i32) {
+        let (score, drift) = self.score(forward, turn);
+        self.add(weaker, -score, drift);
+        self.add(stronger, score, drift);
+    }
+
+    /// Returns the logarithm of the likelihood ratio for the smaller size in two parts with [`NAT_BITS`]: what the innovations say
+    /// for shifts to this side, and what is expected of an unchanged robot.
     #[inline(always)]
-    fn add(&mut self, nats: i32, now: u16) -> u16 {
-        let before = i32::from(self.evidence);
-        let sum = before + nats;
+    fn score(&self, forward: i32, turn: i32) -> (i32, i32) {
+        const BITS: u32 = 2 * INNOVATION_BITS - NAT_BITS;
+        let score = forward * self.innovations[0] + turn * self.innovations[1];
+        let square = forward * forward + turn * turn;
+        (score >> BITS, -square >> (BITS + 1))
+    }
+
+    #[inline(always)]
+    fn add(&mut self, tracks: &mut [Track; SIZES], score: i32, drift: i32) {
+        if score > MOST / LARGER {
+            self.add_at_most(tracks, score, drift);
+        } else {
+            // No size gains more, since the drift is not positive.
+            self.add_to(&mut tracks[0], score + drift);
+            self.add_to(&mut tracks[1], larger(score, drift));
+        }
+    }
+
+    #[inline(never)]
+    fn add_at_most(&mut self, [small, large]: &mut [Track; SIZES], score: i32, drift: i32) {
+        self.add_to(small, (score + drift).min(MOST));
+        self.add_to(large, larger(score, drift).min(MOST));
+    }
+
+    #[inline(never)]
+    fn add_wider(&mut self, track: &mut Track, innovation: i32, held_steps: u8) {
+        // These are less than the most that a step adds.
+        let square = (innovation * innovation).min(WIDER_SQUARE);
+        let nats = (square * WIDER_SLOPE - WIDER_NATS) >> (WIDER_BITS - NAT_BITS);
+        self.add_to(track, if nats > 0 { nats >> held_steps } else { nats });
+    }
+
+    /// Adds nats to an alternative, which restarts at zero.
+    #[inline(always)]
+    fn add_to(&mut self, track: &mut Track, nats: i32) {
+        let sum = i32::from(track.evidence) + nats;
         if sum <= 0 {
-            self.evidence = 0;
-            return 0;
+            *track = self.restarted;
+        } else if sum < i32::from(self.strongest.evidence) {
+            track.evidence = sum as u16;
+        } else {
+            self.set_strongest(track, sum);
         }
-        if before == 0 {
-            self.restarted = now.wrapping_sub(1);
-        }
-        self.evidence = sum.min(before + (MOST_NATS << NAT_BITS)).min(i32::from(u16::MAX)) as u16;
-        self.evidence
+    }
+
+    #[inline(never)]
+    fn set_strongest(&mut self, track: &mut Track, sum: i32) {
+        track.evidence = sum.min(i32::from(u16::MAX)) as u16;
+        let Track { evidence, restarted } = *track;
+        self.strongest = Strongest { evidence, restarted, address: ptr::from_ref(track).addr() };
     }
 }

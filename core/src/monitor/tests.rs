@@ -3,45 +3,38 @@ use crate::chance::{Generator, normal};
 use proptest::prelude::*;
 use rand_core::{Rng, SeedableRng};
 
-const NO_FUNCTIONS: [[i16; POINTS]; 6] = [[0; POINTS]; 6];
+const NO_FUNCTIONS: [[[i16; CHANNELS]; POINTS]; FUNCTIONS] = [[[0; CHANNELS]; POINTS]; FUNCTIONS];
 /// A wheel covers 16 cm in a step at full speed; the track is 12 cm.
 const FULL_CM: f64 = 16.0;
 const FULL_DEG: f64 = 76.4;
 /// Standard deviations of forward and turn, cm and degrees.
 const NOISE: [f64; 2] = [0.25, 1.0];
 
-const fn direction(forward: [i16; 2], turn: [i16; 2]) -> Direction {
-    Direction { response: Response::Travel, forward, turn, grows: false, is_opposite: false }
-}
-
-/// Half of 16 cm is 32 standard deviations, 76.4 degrees are 76; the unit is 1/64 of the travel.
-static DIRECTIONS: [Direction; 4] = [
-    direction([-2048, 0], [4864, 0]),
-    direction([0, -2048], [0, -4864]),
-    direction([-2048, -2048], [4864, -4864]),
-    Direction { is_opposite: true, ..direction([0; 2], [0; 2]) },
-];
-
 /// A robot whose residuals are white, and whose simulator has no error.
 fn law() -> Law<'static> {
     let gains = Gains { precision: 1 << 14, error: 0, tracker: 0, shift: 1 << 14 };
-    // One over the noise, in 30 - 6 fractional bits after the shift from Q16.16 to 10 bits.
-    let whitening = |noise: f64| Whitening {
-        scale: ((1 << 26) as f64 / noise) as i32,
-        shift: 0,
+    let factor = |factor: f64, shift: u8, most: i32| Factor {
+        factor: (factor * (1 << FACTOR_BITS) as f64) as i16,
+        shift,
+        most: (f64::from(most) / factor) as i16,
+    };
+    // One over the noise is 4 and 1, and a residual has 4 bits more than an innovation.
+    let whitening = |shift: u8| Whitening {
+        scale: factor(1.0, shift, 31 << INNOVATION_BITS),
         gains: [[gains; HELD]; 2],
         by_travel: [1 << 14; TRAVELS],
     };
-    let q28 = |x: f64| (x * (1 << 28) as f64) as i32;
     Law {
-        share_of_command: ((1 << 30) as f64 / 100.0) as i32,
-        travel: [q28(1.0 / FULL_CM), q28(0.5 / FULL_DEG)],
+        share_of_command: factor(128.0 / 100.0, 9, (1 << SHARE_BITS) - 1),
+        travel: [factor(16.0 / FULL_CM, 8, 1 << TRAVEL_BITS), factor(0.5 * 128.0 / FULL_DEG, 11, 1 << TRAVEL_BITS)],
         straight_travel: 1 << 10,
         step_ms: 400,
-        per_step_ms: (1 << 24) / 400,
-        correction: [Correction { functions: &NO_FUNCTIONS, shift: 0 }; 2],
-        whitening: NOISE.map(whitening),
-        directions: &DIRECTIONS,
+        per_step_ms: ((1 << 19) / 400) as i16,
+        correction: Correction { functions: &NO_FUNCTIONS, shifts: [0; 2] },
+        whitening: [2, 4].map(whitening),
+        // Half of 16 cm is 32 standard deviations, 76.4 degrees are 76; the unit is 1/64 of the travel.
+        factors: [[2048; RESPONSES], [4864; RESPONSES]],
+        sign: 1 << TRAVEL_BITS,
         most_paused_steps: 3,
         threshold: 17 << NAT_BITS,
     }
@@ -120,7 +113,12 @@ fn lasting_absurd_motion_is_an_alarm() {
 
 #[test]
 fn missing_evidence_of_an_alternative_that_does_not_exist_is_zero() {
-    assert_eq!(Monitor::new(&law()).evidence(Alternative::Direction(200, 2)), 0);
+    let monitor = Monitor::new(&law());
+    for alternative in
+        [Alternative::Direction(DIRECTIONS as u8, 0), Alternative::Direction(200, 2), Alternative::Wider(2)]
+    {
+        assert_eq!(monitor.evidence(alternative), 0);
+    }
 }
 
 prop_compose! {
@@ -141,12 +139,9 @@ proptest! {
     /// Overflow would end a test.
     #[test]
     fn no_input_overflows(steps in prop::collection::vec(any_step(), 1..200), extreme: bool) {
-        let most = Direction {
-            response: Response::Change, forward: [-MOST_FACTOR, MOST_FACTOR], turn: [MOST_FACTOR; 2], grows: true,
-            is_opposite: false,
-        };
-        let directions = [most, Direction { is_opposite: true, ..most }];
-        let law = if extreme { Law { directions: &directions, ..law() } } else { law() };
+        let law = law();
+        let most = Law { factors: [[MOST_FACTOR; RESPONSES]; CHANNELS], sign: MOST_SIGN, ..law };
+        let law = if extreme { most } else { law };
         let mut monitor = Monitor::new(&law);
         for step in &steps {
             monitor.step(&law, &Step { duration_ms: step.duration_ms % 900, ..*step });

@@ -1,8 +1,7 @@
 //! From residuals to innovations: the Kalman filter of the simulator's own error and the tracker's noise.
 
 use super::INNOVATION_BITS;
-use super::alternatives::Weights;
-use crate::fixed_point::product;
+use super::factor::Factor;
 
 /// Number of steps of a held command with gains of their own; later ones have those of the last.
 pub const HELD: usize = 8;
@@ -13,10 +12,8 @@ pub const TRAVELS: usize = 8;
 /// The filter of one channel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Whitening {
-    /// One over the unit of residuals, from Q16.16 to [`INNOVATION_BITS`]: `scale` / 2^(32 + `shift`).
-    pub scale: i32,
-    /// See `scale`, at most 31.
-    pub shift: u8,
+    /// One over the unit of residuals, from [`RESIDUAL_BITS`](super::RESIDUAL_BITS) to [`INNOVATION_BITS`]; at most 31 units.
+    pub scale: Factor,
     /// Gains where the tracker's error at the beginning of the step is known from the step before, and where it is not; each by the
     /// number of steps for which the present command has been held.
     pub gains: [[Gains; HELD]; 2],
@@ -34,7 +31,8 @@ pub struct Gains {
     pub error: i16,
     /// What it says of the tracker's error at the end of the step.
     pub tracker: i16,
-    /// What is left of a lasting shift of residuals once the error for this command has taken in what earlier steps showed.
+    /// What is left of a lasting shift of residuals once the error for this command has taken in what earlier steps showed;
+    /// at most one.
     pub shift: i16,
 }
 
@@ -49,16 +47,20 @@ pub struct Filter {
     tracker: i16,
 }
 
-impl Whitening {
-    /// Returns a residual in Q16.16 in units of residuals, at most 31 of them.
-    pub(super) fn standardised(&self, residual: i32) -> i32 {
-        const MOST: i32 = 31 << INNOVATION_BITS;
-        ((product(residual, self.scale) >> 32) as i32 >> self.shift.min(31)).clamp(-MOST, MOST)
-    }
+/// How far a residual is from what the filter expects, and how that follows from residuals.
+pub struct Innovation {
+    /// In standard deviations, with [`INNOVATION_BITS`], as far as it counts.
+    pub clipped: i32,
+    /// By how much a shift of the residual shifts it, with 14 fractional bits.
+    pub of_residual: i32,
+    /// By how much a shift of the last innovation shifts it, with 14 fractional bits.
+    pub of_last: i32,
+}
 
+impl Whitening {
     /// Returns the factor on innovations and shifts for a travel with 12 fractional bits, whose sum over both wheels is two at
     /// full speed.
-    pub(super) fn width(&self, travel: i32) -> i32 {
+    fn width(&self, travel: i32) -> i32 {
         let eighth = ((travel >> 10) as usize).min(TRAVELS - 1);
         self.by_travel.get(eighth).map_or(1 << 14, |factor| i32::from(*factor))
     }
@@ -75,24 +77,28 @@ impl Filter {
         self.error = 0;
     }
 
-    /// Returns the weights of the residual and of the last innovation in this one, whose precision is that of the gains times
-    /// `width`.
-    pub fn weights(&self, gains: &Gains, width: i32) -> Weights {
-        let precision = (i32::from(gains.precision) * width) >> 14;
-        Weights { residual: precision, last: (precision * i32::from(self.tracker)) >> 14 }
+    /// Returns how far a residual is from what the filter expects, in standard deviations, and the precision of that. `travel` is
+    /// what [`Whitening::width`] takes.
+    #[inline(never)]
+    pub fn innovation(&self, whitening: &Whitening, gains: &Gains, travel: i32, residual: i32) -> (i32, i32) {
+        let residual = whitening.scale.times(residual) - i32::from(self.error);
+        let precision = (i32::from(gains.precision) * whitening.width(travel)) >> 14;
+        let of_last = (precision * i32::from(self.tracker)) >> 14;
+        ((residual * precision + i32::from(self.last) * of_last) >> 14, precision)
     }
 
-    /// Returns how far a residual is from what the filter expects, in standard deviations.
-    pub fn innovation(&self, residual: i32, weights: Weights) -> i32 {
-        ((residual - i32::from(self.error)) * weights.residual + i32::from(self.last) * weights.last) >> 14
-    }
-
-    /// Learns from an innovation.
-    pub fn update(&mut self, innovation: i32, gains: &Gains) {
+    /// Learns from an innovation, and returns how alternatives would have shifted it.
+    #[inline(never)]
+    pub fn update(&mut self, (innovation, precision): (i32, i32), gains: &Gains) -> Innovation {
+        const CLIP: i32 = 6 << INNOVATION_BITS;
+        let innovation = innovation.clamp(-CLIP, CLIP);
+        let of_last = (precision * i32::from(self.tracker)) >> 14;
         let error = i32::from(self.error) + ((innovation * i32::from(gains.error)) >> 14);
         const MOST: i32 = 8 << INNOVATION_BITS;
         self.error = error.clamp(-MOST, MOST) as i16;
         self.last = innovation as i16;
         self.tracker = gains.tracker;
+        // A lasting shift is partly taken for the simulator's own error.
+        Innovation { clipped: innovation, of_residual: (precision * i32::from(gains.shift)) >> 14, of_last }
     }
 }

@@ -35,6 +35,7 @@ use mindgap_logs::controller_file::ControllerFile;
 use mindgap_logs::range_sensor::ULTRASONIC;
 use mindgap_models::simulator::fixed_point::{COMMANDS, DOCUMENTATION, FACING, FixedNetworks};
 use mindgap_models::simulator::monitor::MonitorLaw;
+use mindgap_models::simulator::monitor::directions::NAMED;
 use mindgap_models::simulator::{Learned, Simulator};
 
 /// Export a controller as an onboard program.
@@ -332,8 +333,7 @@ impl Export {
 const NAMES: [&str; 5] = ["turn", "forward", "lateral", "echo_probability", "echo_value"];
 
 fn monitor_in_c(law: &MonitorLaw) -> String {
-    let names: Vec<&str> = law.names().iter().map(|named| named.name).collect();
-    c_monitor(&law.law(), &names)
+    c_monitor(&law.law(), &NAMED.map(|named| named.name))
 }
 
 fn float_networks(simulator: &Simulator) -> Result<[PybricksNetwork; 5]> {

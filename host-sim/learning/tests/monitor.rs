@@ -7,7 +7,7 @@ use mindgap_foundations::executor::Serial;
 use mindgap_learning::learn::train::{TABLE_ONE, Trainer, train};
 use mindgap_logs::{Logs, Run};
 use mindgap_models::simulator::Simulator;
-use mindgap_models::simulator::monitor::directions::DIRECTIONS;
+use mindgap_models::simulator::monitor::directions::NAMED;
 use mindgap_models::simulator::monitor::replay::Replay;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
@@ -87,7 +87,7 @@ fn effects_are_found_in_time_and_named() {
                 });
             });
             if let Some(Alternative::Direction(direction, _)) = monitor.alarm().map(|alarm| alarm.alternative) {
-                named += u64::from(DIRECTIONS[usize::from(direction)].effects.contains(&id));
+                named += u64::from(NAMED[usize::from(direction)].effects.contains(&id));
             }
             steps.push(until + 1);
         }

@@ -6,7 +6,7 @@ use mindgap_core::controller::{Machine, Motors, Status};
 use mindgap_core::fixed::types::I16F16;
 use mindgap_core::fixed_network::Output;
 use mindgap_core::fixed_point::cos_pi;
-use mindgap_core::monitor::Alternative;
+use mindgap_core::monitor::{Alternative, DIRECTIONS, SIZES};
 use mindgap_core::rand_core::{Rng, SeedableRng};
 
 use crate::controller::CONTROLLER;
@@ -100,8 +100,8 @@ fn inferences(checksum: &mut Digest<u32>) {
 /// Watches a robot for its life.
 fn monitored_life(checksum: &mut Digest<u32>) {
     monitored::live(|i, outcome, monitor| {
-        for direction in 0..10 {
-            for size in 0..3 {
+        for direction in 0..DIRECTIONS as u8 {
+            for size in 0..SIZES as u8 {
                 checksum.update(&monitor.evidence(Alternative::Direction(direction, size)).to_le_bytes());
             }
         }

@@ -6,7 +6,10 @@ pub mod findings;
 pub mod replay;
 mod whitening;
 
-use mindgap_core::monitor::{ALTERNATIVES, CHANNELS, Correction, Direction, Law, NAT_BITS, POINTS, Whitening};
+use mindgap_core::monitor::{
+    ALTERNATIVES, CHANNELS, Correction, FACTOR_BITS, FUNCTIONS, Factor, Law, NAT_BITS, POINTS, SHARE_BITS, TRAVEL_BITS,
+    Whitening,
+};
 
 use super::Simulator;
 use super::baseline::{Baseline, MotionModel};
@@ -15,20 +18,20 @@ use super::motion::MotionNetworks;
 use super::nominal::MotionBias;
 use nalgebra::DMatrix;
 
-use directions::{DIRECTIONS, Named};
+use directions::Scaled;
 use mindgap_foundations::error::{Error, Result};
 use mindgap_foundations::motion::{Axis, Motion};
 use mindgap_logs::Robot;
 
-/// Functions of a correction and the power of two of their values.
-type Functions = ([[i16; POINTS]; 6], u8);
+/// Functions of a correction for each channel.
+type Functions = [[[i16; CHANNELS]; POINTS]; FUNCTIONS];
 
 /// The channels that a monitor compares.
 pub const AXES: [Axis; CHANNELS] = [Axis::Forward, Axis::Turn];
 /// Steps for which the bound on false alarms is stated, and that bound.
 pub const LIFETIME_STEPS: f64 = 1e4;
 /// See [`LIFETIME_STEPS`].
-pub const FALSE_ALARMS: f64 = 0.02;
+pub const FALSE_ALARMS: f64 = 0.01;
 /// A tracker may fail for this long, ms.
 const FAILING_MS: f64 = 1000.0;
 /// A turn up to which a robot has gone straight, degrees.
@@ -39,12 +42,14 @@ const STRAIGHT_DEG: f64 = 15.0;
 pub struct MonitorLaw {
     /// The robot.
     pub robot: Robot,
-    correction: [Functions; CHANNELS],
+    functions: Functions,
+    /// Power of two of their values.
+    shifts: [u8; CHANNELS],
     whitening: [Whitening; CHANNELS],
-    directions: Vec<Direction>,
-    /// Size of each direction's smallest alternative, in its unit.
-    pub sizes: Vec<f64>,
-    share_of_command: i32,
+    /// How large the alternatives of each direction are.
+    pub directions: Scaled,
+    share_of_command: Factor,
+    travel: [Factor; CHANNELS],
 }
 
 impl MonitorLaw {
@@ -70,41 +75,39 @@ impl MonitorLaw {
         let whitening: [Whitening; CHANNELS] = whitening
             .and_then(|w| w.try_into().ok())
             .ok_or_else(|| Error::new("the noise of the simulator's motion does not fit the monitor's numbers"))?;
-        let correction = correction::functions(known.bias, &known.precision)
+        let (functions, shifts) = correction::functions(known.bias, &known.precision)
             .ok_or_else(|| Error::new("the correction of the simulator's motion does not fit the monitor's numbers"))?;
-        let share_of_command = libm::round(libm::ldexp(share, 30));
-        if share_of_command >= f64::from(i32::MAX) {
-            return Err(Error::new("the robot's commands are too small for the monitor's numbers"));
-        }
+        let share_of_command = factor(share, 16, SHARE_BITS, (1 << SHARE_BITS) - 1)
+            .ok_or_else(|| Error::new("the robot's commands do not fit the monitor's numbers"))?;
+        let half_track_cm_per_deg = 0.5 * robot.track_cm * 1f64.to_radians();
+        let travel =
+            [1.0, half_track_cm_per_deg].map(|cm| factor(cm / full_cm(&robot), 16, TRAVEL_BITS, 1 << TRAVEL_BITS));
+        let [Some(along), Some(across)] = travel else {
+            return Err(Error::new("the robot's steps do not fit the monitor's numbers"));
+        };
         let steps = directions::typical_steps(&known.commands, &networks, &robot);
         let units = [0, 1].map(|i: usize| noise[i].unit());
-        let (directions, sizes) = directions::scaled(&steps, &whitening, units, &robot);
-        Ok(MonitorLaw { robot, correction, whitening, directions, sizes, share_of_command: share_of_command as i32 })
+        let directions = Scaled::of(&steps, &whitening, units, &robot);
+        Ok(MonitorLaw { robot, functions, shifts, whitening, directions, share_of_command, travel: [along, across] })
     }
 
     /// Returns the constants as the monitor takes them.
     pub fn law(&self) -> Law<'_> {
-        let full_cm = full_cm(&self.robot);
-        let half_track_cm_per_deg = 0.5 * self.robot.track_cm * 1f64.to_radians();
-        let q28 = |x: f64| libm::round(libm::ldexp(x, 28)).min(f64::from(i32::MAX)) as i32;
-        let straight = STRAIGHT_DEG.to_radians() * self.robot.track_cm / full_cm;
+        let straight = STRAIGHT_DEG.to_radians() * self.robot.track_cm / full_cm(&self.robot);
+        let most = f64::from(i16::MAX);
         Law {
             share_of_command: self.share_of_command,
-            travel: [q28(1.0 / full_cm), q28(half_track_cm_per_deg / full_cm)],
-            straight_travel: libm::round(libm::ldexp(straight, 12)) as i32,
+            travel: self.travel,
+            straight_travel: libm::round(libm::ldexp(straight, TRAVEL_BITS as i32)).min(most) as i16,
             step_ms: self.robot.step_ms as u16,
-            per_step_ms: libm::round(libm::ldexp(1.0 / self.robot.step_ms, 24)) as i32,
-            correction: self.correction.each_ref().map(|(functions, shift)| Correction { functions, shift: *shift }),
+            per_step_ms: libm::round(libm::ldexp(1.0 / self.robot.step_ms, 19)).min(most) as i16,
+            correction: Correction { functions: &self.functions, shifts: self.shifts },
             whitening: self.whitening,
-            directions: &self.directions,
+            factors: self.directions.factors,
+            sign: self.directions.sign,
             most_paused_steps: libm::ceil(FAILING_MS / self.robot.step_ms).clamp(1.0, 255.0) as u8,
             threshold: libm::round(libm::ldexp(threshold_nats(), NAT_BITS as i32)) as u16,
         }
-    }
-
-    /// Returns the names of the directions, in the order of the law.
-    pub fn names(&self) -> &'static [Named] {
-        DIRECTIONS
     }
 }
 
@@ -112,6 +115,16 @@ impl MonitorLaw {
 /// [`FALSE_ALARMS`] of the lifetimes of [`LIFETIME_STEPS`].
 pub fn threshold_nats() -> f64 {
     libm::log(ALTERNATIVES as f64 * LIFETIME_STEPS / FALSE_ALARMS)
+}
+
+/// Returns a factor that also changes the number of fractional bits, and whose product is at most `most`; none where it does not
+/// fit.
+fn factor(x: f64, from_bits: u32, to_bits: u32, most: i32) -> Option<Factor> {
+    // The mantissa is from one half to one; the factor is twice as large, and its shift makes up for that.
+    let (mantissa, exponent) = libm::frexp(libm::ldexp(x, to_bits as i32 - from_bits as i32));
+    let shift = u8::try_from(1 - exponent).ok().filter(|shift| *shift < 32)?;
+    let factor = libm::round(libm::ldexp(mantissa, FACTOR_BITS as i32 + 1)).min(f64::from(i16::MAX)) as i16;
+    Some(Factor { factor, shift, most: ((most << FACTOR_BITS) / i32::from(factor)) as i16 })
 }
 
 /// Returns what a wheel covers in a step at full speed, cm.

@@ -1,7 +1,7 @@
 //! The correction of the networks' predictions as functions of single commands and of their differences: the part of the full
 //! one that a board can compute, by least squares over the training steps.
 
-use mindgap_core::monitor::POINTS;
+use mindgap_core::monitor::{CHANNELS, FUNCTIONS, MOST_SHIFT, POINTS, RESIDUAL_BITS};
 use nalgebra::{Cholesky, DMatrix, DVector};
 
 use super::{AXES, Functions};
@@ -11,8 +11,8 @@ use mindgap_foundations::motion::Axis;
 
 /// Added to the products of features, so that they have an inverse; small against those of thousands of steps.
 const RIDGE: f64 = 1e-3;
-/// Largest power of two by which values are multiplied on board.
-const MOST_SHIFT: i32 = 13;
+/// Functions of one channel.
+type Table = [[f64; POINTS]; FUNCTIONS];
 
 /// Returns the products of features, summed over the training steps; none where a file has another number of them.
 pub fn gram(precision: &Precision) -> Option<DMatrix<f64>> {
@@ -20,14 +20,27 @@ pub fn gram(precision: &Precision) -> Option<DMatrix<f64>> {
     without_prior.of(Axis::Turn)
 }
 
-/// Returns the functions of each channel; none where they do not fit.
-pub fn functions(bias: &MotionBias, gram: &DMatrix<f64>) -> Option<[Functions; 2]> {
-    let functions = AXES.map(|axis| {
-        let weights = projected(&weights(bias, axis), gram)?;
-        tabulated(&weights)
+/// Returns the functions and the power of two of their values in each channel; none where they do not fit.
+pub fn functions(bias: &MotionBias, gram: &DMatrix<f64>) -> Option<(Functions, [u8; CHANNELS])> {
+    let tables = AXES.map(|axis| Some(tabulated(&projected(&weights(bias, axis), gram)?)));
+    let [forward, turn] = tables;
+    let tables = [forward?, turn?];
+    let [forward, turn] = tables.each_ref().map(shift);
+    let shifts = [forward?, turn?];
+    let value = |function: usize, point: usize, channel: usize| {
+        libm::round(libm::ldexp(tables[channel][function][point], RESIDUAL_BITS as i32 - i32::from(shifts[channel])))
+            as i16
+    };
+    let functions = std::array::from_fn(|function| {
+        std::array::from_fn(|point| std::array::from_fn(|channel| value(function, point, channel)))
     });
-    let [forward, turn] = functions;
-    Some([forward?, turn?])
+    Some((functions, shifts))
+}
+
+/// Returns the smallest power of two for which values fit.
+fn shift(values: &Table) -> Option<u8> {
+    let most = values.as_flattened().iter().fold(0.0, |most: f64, v| most.max(v.abs()));
+    (0..=MOST_SHIFT).find(|shift| libm::ldexp(most, RESIDUAL_BITS as i32 - i32::from(*shift)) < f64::from(i16::MAX))
 }
 
 /// Returns the mean square of what the functions leave of the correction, in the square of the unit of a channel.
@@ -87,7 +100,7 @@ fn projected(weights: &DVector<f64>, gram: &DMatrix<f64>) -> Option<DVector<f64>
 }
 
 /// Tabulates the functions: of each command alone, then of the differences.
-fn tabulated(weights: &DVector<f64>) -> Option<Functions> {
+fn tabulated(weights: &DVector<f64>) -> Table {
     let sum = |speeds: [f64; 4], among: std::ops::Range<usize>| -> f64 {
         let values = features(speeds, 1.0);
         among.map(|f| weights[f] * values[f]).sum()
@@ -106,10 +119,5 @@ fn tabulated(weights: &DVector<f64>) -> Option<Functions> {
         _ => sum([0.0, 0.0, 0.0, 2.0 * share], differences.start + 11..FEATURES),
     };
     let share = |point: usize| (point as f64 - (POINTS / 2) as f64) / (POINTS / 2) as f64;
-    let values: [[f64; POINTS]; 6] =
-        std::array::from_fn(|function| std::array::from_fn(|point| value(function, share(point))));
-    let most = values.as_flattened().iter().fold(0.0, |most: f64, v| most.max(v.abs()));
-    let shift = (0..=MOST_SHIFT).find(|shift| libm::ldexp(most, 16 - shift) < f64::from(i16::MAX))?;
-    let fixed = values.map(|function| function.map(|v| libm::round(libm::ldexp(v, 16 - shift)) as i16));
-    Some((fixed, shift as u8))
+    std::array::from_fn(|function| std::array::from_fn(|point| value(function, share(point))))
 }

@@ -1,9 +1,10 @@
 //! What a monitor makes of logs.
 
-use mindgap_core::monitor::{Alternative, Monitor, NAT_BITS, Outcome, SIZES};
+use mindgap_core::monitor::{Alternative, DIRECTIONS, LARGER, Monitor, NAT_BITS, Outcome, SIZES};
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use super::directions::NAMED;
 use super::replay::Replay;
 use super::{FALSE_ALARMS, LIFETIME_STEPS};
 use mindgap_foundations::schema_number::SchemaNumber;
@@ -39,7 +40,7 @@ pub struct AlarmFound {
     pub effects: &'static [&'static str],
     /// Size of the strongest alternative, in `unit`; null for wider residuals.
     pub size: Option<f64>,
-    /// Unit of the size: share, share after 64 steps, or steps; null for wider residuals.
+    /// Unit of the size: share, share after 32 steps, or steps; null for wider residuals.
     pub unit: Option<&'static str>,
     /// The step at which the change began.
     pub began: Place,
@@ -90,7 +91,7 @@ impl Findings {
                 }
             });
         }
-        let alternatives = (0..law.directions.len() as u8)
+        let alternatives = (0..DIRECTIONS as u8)
             .flat_map(|direction| (0..SIZES as u8).map(move |size| Alternative::Direction(direction, size)))
             .chain([Alternative::Wider(0), Alternative::Wider(1)]);
         let mut evidence: Vec<Evidence> = alternatives
@@ -119,8 +120,9 @@ impl Replay {
         match alternative {
             Alternative::Direction(direction, size) => {
                 let direction = usize::from(direction);
-                let size = libm::ldexp(self.law.sizes[direction], i32::from(size));
-                (self.law.names()[direction].name.to_owned(), Some(size))
+                let times = if size == 0 { 1 } else { LARGER };
+                let size = f64::from(times) * self.law.directions.sizes[direction];
+                (NAMED[direction].name.to_owned(), Some(size))
             }
             Alternative::Wider(0) => ("forward scatters more".into(), None),
             Alternative::Wider(_) => ("turn scatters more".into(), None),
@@ -130,7 +132,7 @@ impl Replay {
     fn named(&self, alternative: Alternative, began: Place, raised: Place) -> AlarmFound {
         let (what, size) = self.what(alternative);
         let named = match alternative {
-            Alternative::Direction(direction, _) => self.law.names().get(usize::from(direction)),
+            Alternative::Direction(direction, _) => NAMED.get(usize::from(direction)),
             Alternative::Wider(_) => None,
         };
         let effects: &[&str] = named.map_or(&[], |named| named.effects);

@@ -1,8 +1,8 @@
 //! The gains of the monitor's filter, from the noise and the own error that the simulator states.
 
-use mindgap_core::monitor::{Gains, HELD, INNOVATION_BITS, TRAVELS, Whitening};
+use mindgap_core::monitor::{Gains, HELD, INNOVATION_BITS, RESIDUAL_BITS, TRAVELS, Whitening};
 
-use super::{AXES, Known, correction, full_cm, mean_over};
+use super::{AXES, Known, correction, factor, full_cm, mean_over};
 use mindgap_foundations::motion::{Axis, Motion};
 use mindgap_logs::Robot;
 
@@ -11,6 +11,9 @@ const BETWEEN_PERCENT: f64 = 5.0;
 
 /// Variances are taken this much larger than the simulator states them, since they are estimates from logs themselves.
 const MARGIN: f64 = 1.3;
+
+/// The most units that a residual counts, so that products have room.
+const MOST_UNITS: i32 = 31;
 
 /// Smallest unit of residuals, cm or degrees, that the numbers on board hold. Less noise counts as this much.
 const LEAST_UNIT: f64 = 1.0 / 15.0;
@@ -66,9 +69,7 @@ impl Noise {
 
     /// Returns the filter; none where a number does not fit.
     pub fn whitening(&self) -> Option<Whitening> {
-        // From Q16.16 to the fractional bits of innovations, with a factor of 30 bits.
-        let (mantissa, exponent) = libm::frexp(1.0 / self.unit());
-        let shift = u8::try_from(16 - INNOVATION_BITS as i32 + 30 - 32 - exponent).ok().filter(|shift| *shift < 32)?;
+        let scale = factor(1.0 / self.unit(), RESIDUAL_BITS, INNOVATION_BITS, MOST_UNITS << INNOVATION_BITS)?;
         let known = self.gains(true)?;
         let unknown = self.gains(false)?;
         let width = |process: f64| {
@@ -76,7 +77,7 @@ impl Noise {
             (typical / (typical - self.process + process)).sqrt()
         };
         let by_travel = self.process_by_travel.map(|process| fixed(width(process).min(1.9)).unwrap_or(1 << 14));
-        Some(Whitening { scale: libm::ldexp(mantissa, 30) as i32, shift, gains: [known, unknown], by_travel })
+        Some(Whitening { scale, gains: [known, unknown], by_travel })
     }
 
     fn gains(&self, is_tracker_known: bool) -> Option<[Gains; HELD]> {
