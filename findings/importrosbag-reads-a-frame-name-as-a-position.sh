@@ -20,32 +20,30 @@ python3 -m venv "$dir/venv"
   setuptools==80.9.0
 cd "$dir"
 venv/bin/python - <<'END'
-import numpy as np
+import struct
 from importRosbag.importRosbag import importRosbag
 from rosbags.rosbag1 import Reader, Writer
 from rosbags.typesys import Stores, get_typestore
 
-store = get_typestore(Stores.ROS1_NOETIC)
+def text(name):
+    return struct.pack("<I", len(name)) + name.encode()
 
-def make(kind, *fields):
-    return store.types[kind](*fields)
+def numbers(*values):
+    return struct.pack(f"<{len(values)}d", *values)
 
-header = make("std_msgs/msg/Header", 0, make("builtin_interfaces/msg/Time", 1700000000, 0), "world")
-turned = make("geometry_msgs/msg/Quaternion", 0.0, 0.0, 0.6, 0.8)
-place = make("geometry_msgs/msg/Vector3", 1.0, 2.0, 0.0)
-zeros = np.zeros(9)
-transform = make("geometry_msgs/msg/Transform", place, turned)
-pose = make("geometry_msgs/msg/Pose", make("geometry_msgs/msg/Point", 1.0, 2.0, 0.0), turned)
+header = struct.pack("<3I", 0, 1700000000, 0) + text("world")
+place, turned = (1.0, 2.0, 0.0), (0.0, 0.0, 0.6, 0.8)
+covariance = (0.0,) * 9
 messages = {
-    "/base": make("geometry_msgs/msg/TransformStamped", header, "base", transform),
-    "/base_link": make("geometry_msgs/msg/TransformStamped", header, "base_link", transform),
-    "/pose": make("geometry_msgs/msg/PoseStamped", header, pose),
-    "/imu": make("sensor_msgs/msg/Imu", header, turned, zeros, place, zeros, place, zeros),
+    "/base": ("geometry_msgs/msg/TransformStamped", header + text("base") + numbers(*place, *turned)),
+    "/base_link": ("geometry_msgs/msg/TransformStamped", header + text("base_link") + numbers(*place, *turned)),
+    "/pose": ("geometry_msgs/msg/PoseStamped", header + numbers(*place, *turned)),
+    "/imu": ("sensor_msgs/msg/Imu", header + numbers(*turned, *covariance, *place, *covariance, *place, *covariance)),
 }
+store = get_typestore(Stores.ROS1_NOETIC)
 with Writer("run.bag") as bag:
-    for topic, message in messages.items():
-        connection = bag.add_connection(topic, message.__msgtype__, typestore=store)
-        bag.write(connection, 1700000000 * 10**9, store.serialize_ros1(message, message.__msgtype__))
+    for topic, (kind, raw) in messages.items():
+        bag.write(bag.add_connection(topic, kind, typestore=store), 1700000000 * 10**9, raw)
 
 with Reader("run.bag") as bag:
     for connection, _, raw in bag.messages():
