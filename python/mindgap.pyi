@@ -4,7 +4,7 @@ Lengths are in centimetres, angles in degrees and times in milliseconds, as the 
 give the same results on any number of threads. Functions release the interpreter, and Ctrl-C interrupts long ones.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from os import PathLike
 from typing import Any, Final, Literal, TypeAlias, final
 
@@ -28,6 +28,7 @@ __all__ = [
     "evaluate",
     "evolve",
     "record",
+    "rollout",
     "simulate",
     "train",
 ]
@@ -93,6 +94,17 @@ class Simulator:
 
     def write(self, path: _Path, *, force: bool = False) -> None:
         """Writes a simulator file; replacing anything but a simulator needs `force`."""
+
+    def predict(self, logs: Logs) -> pd.DataFrame:
+        """Predicts every row of logs.
+
+        Returns one row per compared value, with the columns `channel` (forward_cm, lateral_cm, turn_deg, echo_probability,
+        echo_value_cm), `logged` and `predicted`. For echo_probability, `logged` is 1 if there was an echo and 0 if not.
+        """
+
+    @property
+    def networks(self) -> dict[str, _Facts | None]:
+        """The networks by name, with their weights; None for one that the logs could not train."""
 
     @property
     def origin(self) -> _Facts:
@@ -311,6 +323,26 @@ def evolve(
     """Evolves one controller for a start (from 1) of a scene in a simulator.
 
     scene: path of scene.toml, or a dict with its contents, which has a target and starts.
+    """
+
+def rollout(
+    simulator: Simulator,
+    controller: Callable[[_Facts], tuple[float, float]],
+    scene: _Tables,
+    *,
+    start: int = 1,
+    steps: int = 100,
+    seed: int = 1,
+) -> pd.DataFrame:
+    """Drives a simulated robot by a controller that is written in Python.
+
+    controller: is called once per step with a dict of t_ms, x_cm, y_cm, heading_deg and echo_cm (None if the sensor gave no
+        value), and returns the left and the right command, -100 to 100.
+    start: number of the start in the scene, from 1.
+    steps: the run ends after this number of steps, or when the robot touches something.
+
+    Returns the run as a frame with the columns of run-*.csv. Its last row is the end, with commands of zero, and
+    `frame.attrs["crashed"]` says whether the robot touched something.
     """
 
 def simulate(

@@ -14,6 +14,7 @@ use mindgap_models::simulator;
 use mindgap_models::simulator::textbook;
 use mindgap_pages::diagnosis::comparison::Comparison;
 use mindgap_pages::diagnosis::{Source, Subject, page};
+use mindgap_pages::text;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 
@@ -117,6 +118,11 @@ impl Diagnosis {
 
     fn _repr_html_(&self, py: Python<'_>) -> String {
         show::below_each_other(&py.detach(|| pictures::figures_of_diagnosis(self.diagnosis())))
+    }
+
+    /// What the command prints.
+    fn __str__(&self) -> String {
+        text::diagnosis(self.diagnosis())
     }
 
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {

@@ -11,6 +11,7 @@ mod evaluation;
 mod interrupt;
 mod logs;
 mod places;
+mod rollout;
 mod show;
 mod simulation;
 mod simulator;
@@ -30,6 +31,8 @@ mod mindgap {
     use super::evaluation::{Evaluation, evaluate};
     #[pymodule_export]
     use super::logs::{Logs, record};
+    #[pymodule_export]
+    use super::rollout::rollout;
     #[pymodule_export]
     use super::show::{Figure, Page};
     #[pymodule_export]

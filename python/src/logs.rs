@@ -95,6 +95,12 @@ impl Logs {
         convert::facts(py, &survey)
     }
 
+    /// Pickles them as what they were made from.
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, [Bound<'py, PyAny>; 3])> {
+        let parts = [self.runs(py)?.into_any(), self.robot(py)?, self.scene(py)?];
+        Ok((py.get_type::<Logs>().into_any(), parts))
+    }
+
     fn __len__(&self) -> usize {
         self.inner.runs.len()
     }

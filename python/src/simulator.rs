@@ -4,12 +4,15 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use mindgap_command::kinds;
+use mindgap_learning::evaluation::predictions::{Predictions, predict};
 use mindgap_learning::learn::paper;
 use mindgap_learning::learn::train::{self as training, TABLE_ONE, Trainer};
 use mindgap_models::simulator;
 use mindgap_workers::Workers;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use serde::Serialize;
 
 use crate::error::{raised, warn};
 use crate::interrupt::{Interrupt, interruptible};
@@ -41,6 +44,37 @@ impl Simulator {
         self.inner.write(&path).map_err(raised)
     }
 
+    /// Predicts every row of logs; returns a frame of logged and predicted values by channel.
+    fn predict<'py>(&self, py: Python<'py>, logs: &Logs) -> PyResult<Bound<'py, PyAny>> {
+        let predicted = py.detach(|| predict(&self.inner, &logs.inner)).map_err(raised)?;
+        let Predictions { forward, lateral, turn, echo_probability, echo_value } = predicted;
+        let channels = [
+            ("forward_cm", forward),
+            ("lateral_cm", lateral),
+            ("turn_deg", turn),
+            ("echo_probability", echo_probability),
+            ("echo_value_cm", echo_value),
+        ];
+        let rows = channels.iter().flat_map(|(channel, pairs)| {
+            pairs.iter().map(|[logged, predicted]| Prediction { channel, logged: *logged, predicted: *predicted })
+        });
+        convert::frame(py, &rows.collect::<Vec<_>>())
+    }
+
+    /// The networks by name, with their weights, as the simulator file has them.
+    #[getter]
+    fn networks<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let simulator::Simulator { turn, forward, lateral, echo_probability, echo_value, .. } = &*self.inner;
+        let networks = PyDict::new(py);
+        for (name, learned) in [("turn", turn), ("forward", forward), ("lateral", lateral)] {
+            networks.set_item(name, convert::facts(py, &learned.as_ref().map(|learned| &learned.network))?)?;
+        }
+        for (name, learned) in [("echo_probability", echo_probability), ("echo_value", echo_value)] {
+            networks.set_item(name, convert::facts(py, &learned.as_ref().map(|learned| &learned.network))?)?;
+        }
+        Ok(networks.into_any())
+    }
+
     /// How the simulator was made.
     #[getter]
     fn origin<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
@@ -59,9 +93,29 @@ impl Simulator {
         convert::facts(py, &self.inner.added)
     }
 
+    /// Pickles it as its file.
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, (String, String))> {
+        let text = serde_json::to_string(&*self.inner).map_err(|e| PyValueError::new_err(e.to_string()))?;
+        Ok((py.get_type::<Simulator>().getattr("_unpickled")?, (text, self.name.clone())))
+    }
+
+    #[staticmethod]
+    fn _unpickled(text: &str, name: String) -> PyResult<Self> {
+        let inner = serde_json::from_str(text).map_err(|e| PyValueError::new_err(e.to_string()))?;
+        Ok(Simulator { inner: Arc::new(inner), name })
+    }
+
     fn __repr__(&self) -> String {
         format!("<mindgap.Simulator from {} runs, with {} effects>", self.inner.origin.runs, self.inner.added.len())
     }
+}
+
+/// A row of the frame of predictions.
+#[derive(Serialize)]
+struct Prediction<'a> {
+    channel: &'a str,
+    logged: f64,
+    predicted: f64,
 }
 
 impl Simulator {

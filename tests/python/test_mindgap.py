@@ -2,6 +2,7 @@
 
 import json
 import os
+import pickle
 import signal
 import subprocess
 import threading
@@ -144,6 +145,48 @@ def test_evolution_and_simulation_equal_those_of_the_command(simulator, tmp_path
     )
     assert simulation.success == facts["success"] and len(facts["runs"]) == 8
     assert [run["end_x_cm"] for run in facts["runs"]] == pytest.approx(list(simulation.runs["end_x_cm"]))
+
+
+def test_controllers_in_python_drive_the_simulated_robot(simulator):
+    """Turns before walls, and so lives longer than one that drives straight on."""
+    def careful(seen):
+        assert set(seen) == {"t_ms", "x_cm", "y_cm", "heading_deg", "echo_cm"}
+        is_near = seen["echo_cm"] is not None and seen["echo_cm"] < 45
+        return (40, -40) if is_near else (40, 40)
+
+    runs = [mindgap.rollout(simulator, careful, SCENE, steps=20, seed=3) for _ in range(2)]
+    pd.testing.assert_frame_equal(*runs)
+    assert list(runs[0].columns) == ["t_ms", "left", "right", "x_cm", "y_cm", "heading_deg", "echo_cm"]
+    straight = mindgap.rollout(simulator, lambda seen: (80, 80), SCENE, steps=20)
+    assert straight.attrs["crashed"] and len(straight) < len(runs[0])
+    assert (straight.iloc[0]["x_cm"], straight.iloc[-1]["left"]) == (40, 0)
+    again = mindgap.Logs({"run-000": runs[0]}, simulator.robot, SCENE)
+    assert len(again.frame()) == len(runs[0])
+    for commands, problem in [((180, 0), "step 0: commands 180 and 0"), ((float("nan"), 0), "step 0: commands NaN and 0")]:
+        with pytest.raises(mindgap.Error, match=problem):
+            mindgap.rollout(simulator, lambda seen: commands, SCENE)
+    with pytest.raises(ZeroDivisionError):
+        mindgap.rollout(simulator, lambda seen: 1 / 0, SCENE)
+
+
+def test_predictions_and_weights_are_data(simulator, logs):
+    predictions = simulator.predict(logs).set_index("channel")
+    forward = predictions.loc["forward_cm"]
+    assert np.corrcoef(forward["logged"], forward["predicted"])[0, 1] > 0.9
+    assert predictions.loc["echo_probability", "predicted"].between(0, 1).all()
+    assert set(simulator.networks) == {"turn", "forward", "lateral", "echo_probability", "echo_value"}
+    weights = np.array([unit["weights"] for unit in simulator.networks["echo_value"]["summation"]])
+    assert weights.ndim == 2 and weights.shape[1] == 2
+
+
+def test_simulators_and_logs_are_pickled(simulator, logs):
+    again = pickle.loads(pickle.dumps({"simulator": simulator, "logs": logs}))
+    assert again["simulator"].networks == simulator.networks and again["simulator"].origin == simulator.origin
+    pd.testing.assert_frame_equal(again["logs"].frame(), logs.frame())
+
+
+def test_a_printed_diagnosis_is_its_summary(diagnosis):
+    assert str(diagnosis).startswith("There is a gap") and "motor_asymmetry" in str(diagnosis)
 
 
 def test_figures_and_pages_are_displayed_and_written(diagnosis, simulator, logs, tmp_path):
