@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # All checks of the project: format, spelling, lints, documentation, tests, firmware. Runs as root or with sudo on Debian and
-# Ubuntu with Rust from rustup, and installs what else it needs. On two cores a fresh clone takes about 45 minutes. Tests run in
+# Ubuntu with Rust from rustup, and installs what else it needs. On two cores a fresh clone takes about half an hour. Tests run in
 # their short form; tests/slow.sh runs the long one.
 set -euo pipefail
 cd "$(dirname "$0")/.."

@@ -4,9 +4,9 @@
 # tests/run.sh has a short form of each, so a fault that this script finds is usually found there first:
 #
 #   what                                    in tests/run.sh                           here
-#   kills of commands with a checkpoint     2 per command                             200; 20 of calibrate and the demo
+#   kills of commands with a checkpoint     2 of evolve, train, make and the loop     200 of all; 20 of calibrate and the demo
 #   numbers of ranks                        3                                         1, 2 and 4
-#   failing disk calls                      2 per quick command, 1 per slow one       every call, twice; 8 also of the demo
+#   failing disk calls                      2 per quick command, 1 of three slow ones every call, twice; 8 also of the demo
 #   the demo                                demo --quick: its files and texts         the whole demo: the target is reached
 #   cases of another robot                  three of 31                               all
 #   changes put into real logs              three and none in the last third          26 in each third, 13 in scans

@@ -11,7 +11,7 @@ use mindgap_logs::robot::same_robot;
 use mindgap_logs::tables::Table;
 use mindgap_models::simulator::Simulator;
 use pyo3::prelude::*;
-use pyo3::types::{IntoPyDict, PyDict};
+use pyo3::types::{IntoPyDict, PyDict, PyTuple};
 
 use crate::error::{Error, raised, warn};
 use crate::{convert, places};
@@ -96,8 +96,8 @@ impl Logs {
     }
 
     /// Pickles them as what they were made from.
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, [Bound<'py, PyAny>; 3])> {
-        let parts = [self.runs(py)?.into_any(), self.robot(py)?, self.scene(py)?];
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
+        let parts = PyTuple::new(py, [self.runs(py)?.into_any(), self.robot(py)?, self.scene(py)?])?;
         Ok((py.get_type::<Logs>().into_any(), parts))
     }
 

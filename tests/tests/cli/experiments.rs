@@ -6,7 +6,7 @@ use std::sync::LazyLock;
 use std::thread;
 
 use mindgap_tests::command::{Outcome, Sandbox};
-use mindgap_tests::form::{short_or_long, spread};
+use mindgap_tests::form::{is_long, short_or_long, spread};
 
 /// A small weaker motor, which six runs do not tell from others.
 const FAULT: &str = "--effect payload=0.03";
@@ -65,6 +65,9 @@ fn scripts_are_driven_until_the_runs_are_used_up_and_a_series_is_resumed() {
 
     // The logs are a folder of logs, and one call gives the same as two.
     sandbox.run("check series");
+    if !is_long() {
+        return;
+    }
     let whole = undecided();
     whole.write("my driver.sh", format!("{} > /dev/null\n", good(&whole)));
     assert_eq!(driven(&whole, "--runs 2").code, 0);

@@ -8,7 +8,7 @@ use std::path::PathBuf;
 use std::process::Command;
 
 use mindgap_tests::command::{Outcome, Sandbox, program};
-use mindgap_tests::form::{is_skipped, short_or_long, spread};
+use mindgap_tests::form::{is_long, is_skipped, short_or_long, spread};
 use mindgap_tests::rooms::{challenge, robot, trained, with_scene};
 use rayon::prelude::*;
 
@@ -83,12 +83,13 @@ fn quick_commands_leave_complete_files_when_a_disk_fails() {
 fn slow_commands_leave_complete_files_when_a_disk_fails() {
     let sandbox = trained();
     sandbox.run("record --out slow --runs 4 --steps 25 --seed 9 --effect drive_scale=0.85");
-    for (call, leaves) in [
+    let calls = vec![
         ("adapt sim.json slow --out better.json", AllOrNothing),
         ("evaluate sim.json logs --json facts.json --html page.html --figures figures", Stages),
         ("diagnose sim.json slow --json facts.json --html page.html --figures figures --apply better.json", Stages),
         ("challenge make --cases 2 --out blind", AllOrNothing),
-    ] {
+    ];
+    for (call, leaves) in spread(calls, short_or_long(1, 4)) {
         assert_whole(&sandbox, call, few(), leaves);
     }
 }
@@ -103,7 +104,9 @@ fn commands_with_checkpoints_leave_complete_files_when_a_disk_fails() {
         few(),
         AllOrNothing,
     );
-    assert_whole(&challenge(2), "challenge answer blind", few(), Stages);
+    if is_long() {
+        assert_whole(&challenge(2), "challenge answer blind", few(), Stages);
+    }
 }
 
 /// The robot's command is another program, whose calls do not fail: `strace` detaches from it.
