@@ -5,6 +5,7 @@
 #
 #   what                                    in tests/run.sh                           here
 #   kills of commands with a checkpoint     2 of evolve, train, make and the loop     200 of all; 20 of calibrate and the demo
+#   a loop in two calls                     resumed after kills                       compared with one call as well
 #   numbers of ranks                        3                                         1, 2 and 4
 #   failing disk calls                      2 per quick command, 1 of three slow ones every call, twice; 8 also of the demo
 #   the demo                                demo --quick: its files and texts         the whole demo: the target is reached
