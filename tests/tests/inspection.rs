@@ -33,6 +33,25 @@ fn no_effect_is_mistaken_for_a_fault() {
     }
 }
 
+/// A controller that makes up for a weak motor commands a turn that the robot does not make, or hardly.
+#[test]
+fn headings_of_a_robot_that_is_steered_straight_are_kept() {
+    let mut logs = logs(1, &[]);
+    let mut heading_deg = 0.0;
+    for k in 0..logs.runs[0].rows.len() {
+        // The median turn is as small as if it were in radians.
+        heading_deg += [-0.05, 1.0, -1.0][k % 3];
+        let pose = Pose::new(40.0 + 4.0 * k as f64, 110.0, f64::to_radians(heading_deg));
+        logs.runs[0].rows.edit(k, |row| {
+            [row.left, row.right] = [36.0, 33.0];
+            row.pose = Some(pose);
+        });
+    }
+    let inspected = Inspection::new(logs.clone());
+    assert!(inspected.findings.iter().all(|found| found.id != "heading_radians"), "{:?}", inspected.findings);
+    assert_eq!(inspected.logs, logs);
+}
+
 /// A robot that misses its commands for seconds may spin against them by 90 degrees per step, which looks like a jump of the
 /// tracker. That happens in few rows, and they are reported.
 #[test]

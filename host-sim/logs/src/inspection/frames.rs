@@ -29,22 +29,35 @@ const MIN_MOVED_CM: f64 = 50.0;
 /// Returns the fractions of straight segments that run along the heading turned by 0 to 3 quarter turns, then the same with
 /// clockwise headings; `None` with too few segments.
 pub fn directions(segments: &[Segment], robot: &Robot) -> Option<[f64; 8]> {
+    mean_by_frame(segments, robot, |off_rad| f64::from(u8::from(off_rad < FRAC_PI_4)))
+}
+
+/// Returns the mean angle between the course of straight segments and their heading, rad, in the frame of [`directions`] that
+/// fits best; `None` with too few segments.
+pub fn off_course_rad(segments: &[Segment], robot: &Robot) -> Option<f64> {
+    let means_rad = mean_by_frame(segments, robot, |off_rad| off_rad)?;
+    Some(means_rad.into_iter().fold(f64::INFINITY, f64::min))
+}
+
+/// Returns the mean over straight segments of a function of the angle between course and heading, for each frame of
+/// [`directions`].
+fn mean_by_frame(segments: &[Segment], robot: &Robot, of: impl Fn(f64) -> f64) -> Option<[f64; 8]> {
     let straight: Vec<&Segment> =
         straight(segments, robot).into_iter().filter(|segment| segment.chord_cm.length() > 0.0).collect();
     if straight.len() < MIN_SAMPLES {
         return None;
     }
-    let mut shares = [0.0; 8];
+    let mut means = [0.0; 8];
     for segment in &straight {
         let backwards = if segment.commanded.forward_cm < 0.0 { PI } else { 0.0 };
         let course_rad = libm::atan2(segment.chord_cm.y, segment.chord_cm.x) + backwards;
-        for (i, share) in shares.iter_mut().enumerate() {
+        for (i, mean) in means.iter_mut().enumerate() {
             let heading_rad = if i < 4 { segment.heading_rad } else { -segment.heading_rad };
             let off_rad = wrap_rad(course_rad - heading_rad - (i % 4) as f64 * FRAC_PI_2);
-            *share += f64::from(u8::from(off_rad.abs() < FRAC_PI_4)) / straight.len() as f64;
+            *mean += of(off_rad.abs()) / straight.len() as f64;
         }
     }
-    Some(shares)
+    Some(means)
 }
 
 /// Returns the index of the largest share, and the share.

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use super::finding::{Finding, Handling, Part, RunRows};
-use super::frames::{directions, largest_share};
+use super::frames::{directions, largest_share, off_course_rad};
 use super::segments::{Gains, Segment, segments};
 use crate::Logs;
 use mindgap_foundations::geometry::wrap_rad;
@@ -48,7 +48,8 @@ pub fn commands(logs: &mut Logs) -> Vec<Finding> {
 }
 
 /// Converts headings from radians if turns are smaller than commanded by the factor between radians and degrees, and the
-/// robot then moves in a consistent direction to its heading.
+/// robot then moves in a consistent direction to its heading, and closer to it than before: a controller that makes up for a
+/// weak motor commands turns, and the robot hardly turns.
 pub fn headings(logs: &mut Logs) -> Vec<Finding> {
     let segments = segments(logs);
     let Some(_) = Gains::of(&segments, &logs.robot).turn.filter(|gain| is_near(gain.abs(), RADIANS)) else {
@@ -58,7 +59,10 @@ pub fn headings(logs: &mut Logs) -> Vec<Finding> {
     for run in &mut converted.runs {
         run.rows.edit_poses(|pose| pose.heading_rad = wrap_rad(pose.heading_rad / RADIANS));
     }
-    if !has_consistent_direction(&super::segments::segments(&converted), &converted) {
+    let converted_segments = super::segments::segments(&converted);
+    let [before, after] = [&segments, &converted_segments].map(|segments| off_course_rad(segments, &logs.robot));
+    let is_closer = before.zip(after).is_none_or(|(before_rad, after_rad)| after_rad < before_rad);
+    if !is_closer || !has_consistent_direction(&converted_segments, &converted) {
         return Vec::new();
     }
     *logs = converted;
