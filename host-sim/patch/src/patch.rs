@@ -47,7 +47,7 @@ pub struct NotPatched {
 }
 
 /// Patched files.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Patched {
     /// Text of each file, in the order of the models; a file without a patch is as it was.
     pub texts: Vec<String>,
@@ -63,8 +63,11 @@ pub struct Patched {
 const LEAST_SHARE: f64 = 0.05;
 
 /// Writes causes into models. Each model goes to the file beside it. Every cause is written once, into the first model that has
-/// a tag for it: two that stand for the same would count twice, or cancel.
+/// a tag for it: two that stand for the same would count twice, or cancel. Without a model nothing is asked for.
 pub fn patch(models: &[(Model, PathBuf)], causes: &[Cause], robot: &Robot, engine: Option<Engine>) -> Patched {
+    if models.is_empty() {
+        return Patched::default();
+    }
     let mut current: Vec<Model> = models.iter().map(|(model, _)| model.clone()).collect();
     let (mut patches, mut not_patched) = (Vec::new(), Vec::new());
     for cause in causes {

@@ -294,6 +294,12 @@ fn a_cause_goes_into_the_first_file_that_has_a_tag_for_it_and_into_no_other() {
 }
 
 #[test]
+fn without_a_model_no_cause_is_left_out() {
+    let patched = patch(&[], &[cause("drive_scale", &[("factor", 0.5)])], &robot(), None);
+    assert_eq!((patched.patches, patched.not_patched), (vec![], vec![]));
+}
+
+#[test]
 fn intervals_are_in_the_unit_of_the_tag() {
     let patched = patched_by("a.urdf", URDF, &cause("track_width", &[("factor", 0.9)]), None);
     let [low, high] = patched.patches[1].ci95.expect("an interval");
