@@ -4,6 +4,7 @@ pub mod parts;
 mod problem;
 
 use std::ops::Range;
+use std::sync::OnceLock;
 
 use parts::Part;
 use problem::Problem;
@@ -45,6 +46,7 @@ pub struct FitContext<'a> {
     /// Nats by channel that the effects explain which the simulator has already.
     pub already_explained: [f64; Channel::COUNT],
     top_speed: f64,
+    null: OnceLock<Fitted>,
 }
 
 /// A hypothesis fitted to identification rows: the simulator as it is, or effects, a formula among them.
@@ -90,6 +92,7 @@ impl<'a> FitContext<'a> {
             motion_uncertainty: MotionUncertainty::of(rows),
             already_explained: already_explained(rows),
             top_speed: rows.top_speed(),
+            null: OnceLock::new(),
         }
     }
 
@@ -144,7 +147,9 @@ impl Explanation for Fitted {
 impl Fitted {
     /// The null hypothesis: the simulator as it is.
     pub fn null(context: &FitContext) -> Self {
-        Fitted::at(Hypothesis::null(context.baseline()), Vec::new(), context)
+        // Every fit of a part starts from it.
+        let null = || Fitted::at(Hypothesis::null(context.baseline()), Vec::new(), context);
+        context.null.get_or_init(null).clone()
     }
 
     /// Effects whose parameters are given and not fitted.
@@ -270,7 +275,8 @@ impl Fitted {
         further.retain(|candidate| Part::of(candidate) == part);
         let faced = self.hypothesis.senses();
         let faced = faced.then(|| self.problem(self.hypothesis.clone(), context).faced(&self.values));
-        let least = self.problem(self.hypothesis.clone(), context).sketched_value(&self.values, LEAST_NATS);
+        let least = self.problem(self.hypothesis.clone(), context);
+        let least = least.sketched_value(&self.values, faced.as_ref(), LEAST_NATS);
         let sketches = further.par_iter().map(|c| (*c, self.sketched_with(*c, faced.as_ref(), context)));
         let mut sketches: Vec<_> = sketches.filter(|(_, (_, sketch))| sketch.value() > least).collect();
         sketches.sort_by(|a, b| b.1.1.value().total_cmp(&a.1.1.value()));

@@ -44,11 +44,12 @@ impl<'a> Problem<'a> {
         best.unwrap_or_else(|| Point::new(&vec![0.0; bounds.len()], terms))
     }
 
-    /// Returns the value at a point on the rows of a sketch, plus `further` nats over all rows.
-    pub fn sketched_value(&self, at: &[f64], further: f64) -> f64 {
+    /// Returns the value at a point on the rows of a sketch, plus `further` nats over all rows. `faced` is as for a sketch.
+    pub fn sketched_value(&self, at: &[f64], faced: Option<&FacedRows>, further: f64) -> f64 {
         let (sample, untouched) = self.sketched();
         let share = sample.rows.len() as f64 / self.context.rows.rows.len().max(1) as f64;
-        Point::new(at, |at| self.terms(&SensorCache::new(sample, None), &untouched, at)).value() + share * further
+        let cache = SensorCache::new(sample, faced);
+        Point::new(at, |at| self.terms(&cache, &untouched, at)).value() + share * further
     }
 
     /// Iterates to convergence on all rows and cross-validates the result.
