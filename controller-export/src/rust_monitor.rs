@@ -1,19 +1,19 @@
 //! The constants of the monitor on board as Rust source, for a program that depends on `mindgap-core`.
 
-use mindgap_core::monitor::{CHANNELS, FUNCTIONS, Factor, Gains, Law, POINTS, Whitening};
+use mindgap_core::monitor::{CHANNELS, FUNCTIONS, Law, POINTS, Whitening};
 
 /// Returns a Rust source file with the static `LAW`.
 pub fn rust_monitor(law: &Law) -> String {
     let functions: String = law.correction.functions.iter().map(function).collect();
     let whitening: String = law.whitening.iter().map(whitening).collect();
-    let [along, across] = law.travel.map(factor);
+    let [along, across] = law.travel;
     format!(
-        "use mindgap_core::monitor::{{Correction, Factor, Gains, Law, Whitening}};
+        "use mindgap_core::monitor::{{Correction, Law, Whitening}};
 
 /// What the monitor knows of the unchanged robot.
 pub static LAW: Law = Law {{
-    share_of_command: {},
-    travel: [{along}, {across}],
+    share_of_command: {:?},
+    travel: [{along:?}, {across:?}],
     straight_travel: {},
     step_ms: {},
     per_step_ms: {},
@@ -29,7 +29,7 @@ pub static LAW: Law = Law {{
 static FUNCTIONS: [[[i16; {CHANNELS}]; {POINTS}]; {FUNCTIONS}] = [
 {functions}];
 ",
-        factor(law.share_of_command),
+        law.share_of_command,
         law.straight_travel,
         law.step_ms,
         law.per_step_ms,
@@ -41,30 +41,22 @@ static FUNCTIONS: [[[i16; {CHANNELS}]; {POINTS}]; {FUNCTIONS}] = [
     )
 }
 
-fn factor(factor: Factor) -> String {
-    let Factor { factor, shift, most } = factor;
-    format!("Factor {{ factor: {factor}, shift: {shift}, most: {most} }}")
-}
-
 fn function(values: &[[i16; CHANNELS]; POINTS]) -> String {
     format!("    {values:?},\n")
 }
 
 fn whitening(whitening: &Whitening) -> String {
     let Whitening { scale, gains, by_travel } = whitening;
-    let scale = factor(*scale);
     let gains: String = gains
         .iter()
         .map(|gains| {
-            let gains = gains.iter().map(|Gains { precision, error, tracker, shift }| {
-                format!("                    Gains {{ precision: {precision}, error: {error}, tracker: {tracker}, shift: {shift} }},\n")
-            });
-            format!("                [\n{}                ],\n", gains.collect::<String>())
+            let gains: String = gains.iter().map(|gains| format!("                    {gains:?},\n")).collect();
+            format!("                [\n{gains}                ],\n")
         })
         .collect();
     format!(
         "        Whitening {{
-            scale: {scale},
+            scale: {scale:?},
             gains: [
 {gains}            ],
             by_travel: {by_travel:?},

@@ -15,8 +15,8 @@ use mindgap_core::fixed_network::{FixedNetwork, FixedScaling};
 use mindgap_core::folded::PowerSum;
 use mindgap_core::heapless::Vec as FixedVec;
 use mindgap_core::monitor::{
-    Alternative, CHANNELS, Correction, DIRECTIONS, FUNCTIONS, Factor, Gains, HELD, Law, Monitor, NAT_BITS, Outcome,
-    POINTS, SIZES, Step, TRAVELS, Whitening,
+    Alternative, CHANNELS, Correction, FUNCTIONS, Factor, Gains, HELD, Law, Monitor, NAT_BITS, Outcome,
+    POINTS, Step, TRAVELS, Whitening,
 };
 use mindgap_core::network::Activation;
 use mindgap_core::rand_core::{Rng, SeedableRng};
@@ -129,13 +129,13 @@ fn life(law: &Law, [forward, turn]: &[FixedNetwork<4>; 2]) -> (String, String) {
             Outcome::Paused => 1,
             Outcome::Changed(_) => 2,
         };
-        let directions = (0..DIRECTIONS as u8)
-            .flat_map(|direction| (0..SIZES as u8).map(move |size| Alternative::Direction(direction, size)));
-        for alternative in directions.chain([Alternative::Wider(0), Alternative::Wider(1)]) {
+        for alternative in Alternative::all() {
             let _ = write!(expected, "{} ", monitor.evidence(alternative));
         }
         let alarm = monitor.alarm();
-        let index = alarm.map_or(-1, |alarm| alarm.alternative.index() as i32);
+        let index = alarm
+            .and_then(|alarm| Alternative::all().position(|alternative| alternative == alarm.alternative))
+            .map_or(-1, |index| index as i32);
         let _ = writeln!(expected, "{outcome} {index} {}", alarm.map_or(0, |alarm| alarm.after_steps));
     }
     (input, expected)

@@ -1,4 +1,4 @@
-//! Folded networks and their evaluator, which works on floats, pairs, vectors and fixed point alike.
+//! Folded networks and their evaluator, which works on floats, pairs and vectors alike.
 //!
 //! Summation units are linear and so is the output unit, so together they fold into one affine map: a network is exactly
 //! `bias + Σ slopes·x + Σ output·2^(Σ exponents·log2 x)`. Over the five networks of Table I in the paper this leaves 206 of

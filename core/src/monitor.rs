@@ -10,7 +10,7 @@
 //! **Alternatives.** A direction predicts by how many standard deviations λ a change of the robot would shift the
 //! innovations. λ depends on commands and predictions alone, so it is known before the measurement. It is proportional to
 //! one of the [`SIGNALS`], which becomes weaker, or stronger where that makes sense. Each direction is tried in two
-//! [`SIZES`]. Each channel also has an alternative that says only that its residuals are [wider](WIDER).
+//! [`SIZES`]. Each channel also has an alternative that says only that its residuals are [wider](Alternative::Wider).
 //!
 //! **Evidence.** One step multiplies the evidence of an alternative by the likelihood ratio exp(λz - λ²/2), whose
 //! expectation is at most one under the null. Innovations are clipped and a step counts at most [`MOST_NATS`], which only
@@ -43,7 +43,7 @@ use fixed::types::I16F16;
 
 pub use alternatives::{
     ALTERNATIVES, Alternative, DIRECTIONS, HAS_OPPOSITE, LARGER, MOST_FACTOR, MOST_NATS, MOST_SIGN, RESPONSES, SIGNALS,
-    SIZES, WIDER,
+    SIZES,
 };
 pub use correction::{Correction, FUNCTIONS, MOST_SHIFT, POINTS};
 pub use factor::{FACTOR_BITS, Factor};

@@ -34,8 +34,6 @@ pub const MOST_FACTOR: i16 = 8191;
 pub const MOST_SIGN: i16 = 8191;
 /// [`MOST_NATS`] with [`NAT_BITS`].
 const MOST: i32 = MOST_NATS << NAT_BITS;
-/// Factor by which residuals scatter more under the alternative that says only that.
-pub const WIDER: f64 = 2.0;
 
 /// No response shifts innovations more, so that squares have room.
 const MOST_SHIFT: i32 = 2 << INNOVATION_BITS;
@@ -43,7 +41,7 @@ const MOST_SHIFT: i32 = 2 << INNOVATION_BITS;
 pub const MOST_RUN_STEPS: u8 = 127;
 /// Number of steps after which it is as large as the travel of both wheels, as a power of two.
 const FADING_BITS: u32 = 5;
-/// In wider residuals innovations count at most this much, as a square.
+/// In wider residuals, which scatter twice as much, innovations count at most this much, as a square.
 const WIDER_SQUARE: i32 = 1 << (4 + 2 * INNOVATION_BITS);
 /// (1 - 1/2²)/2 with 3 fractional bits.
 const WIDER_SLOPE: i32 = 3;
@@ -57,7 +55,7 @@ const WIDER_NATS: i32 = 5_814_540;
 pub enum Alternative {
     /// A direction, and the number of its size.
     Direction(u8, u8),
-    /// Residuals of a channel scatter more.
+    /// Residuals of a channel scatter twice as much.
     Wider(u8),
 }
 
@@ -123,10 +121,9 @@ impl Travel {
 }
 
 impl Alternative {
-    /// Returns its place among all alternatives.
-    pub fn index(self) -> usize {
-        let (row, column) = self.place();
-        row * SIZES + column
+    /// Returns all alternatives, by number.
+    pub fn all() -> impl Iterator<Item = Self> {
+        (0..ALTERNATIVES).map(Self::at)
     }
 
     fn at(index: usize) -> Self {

@@ -15,24 +15,33 @@ const SEED: u64 = 5;
 /// Standard deviations of forward (cm) and turn (degrees): a fourth, and one.
 const NOISE: [I16F16; CHANNELS] = [I16F16::from_bits(1 << 14), I16F16::ONE];
 
+/// Runs a life, and calls `each` with the number of the step, what the monitor made of it, and the monitor.
+pub fn live(mut each: impl FnMut(u32, Outcome, &Monitor)) {
+    let mut robot = Watched::new();
+    for i in 0..STEPS {
+        let step = robot.drive();
+        let outcome = robot.monitor.step(&LAW, &step);
+        each(i, outcome, &robot.monitor);
+    }
+}
+
 /// The robot and its monitor.
-pub struct Watched {
+struct Watched {
     generator: Generator,
     commands: [I16F16; 2],
-    /// The monitor.
-    pub monitor: Monitor,
+    monitor: Monitor,
     steps: u32,
 }
 
 impl Watched {
     /// Returns the robot at the beginning of its life.
-    pub fn new() -> Self {
+    fn new() -> Self {
         let generator = Generator::seed_from_u64(SEED);
         Watched { generator, commands: [I16F16::ZERO; 2], monitor: Monitor::new(&LAW), steps: 0 }
     }
 
     /// Drives for one step.
-    pub fn drive(&mut self) -> Step {
+    fn drive(&mut self) -> Step {
         let before = self.commands;
         if self.generator.next_u32() >> 31 == 0 {
             let mut command = || I16F16::from_bits((self.generator.next_u32() >> 9) as i32).saturating_sub(I16F16::saturating_from_num(64));
@@ -54,21 +63,5 @@ impl Watched {
         let duration_ms = 395 + (self.generator.next_u32() >> 28) as u16;
         let measured = (!is_lost).then_some(measured);
         Step { commands: [left, right, before[0], before[1]], predicted, measured, duration_ms }
-    }
-}
-
-impl Default for Watched {
-    fn default() -> Self {
-        Watched::new()
-    }
-}
-
-/// Runs a life, and calls `each` with the number of the step, what the monitor made of it, and the monitor.
-pub fn live(mut each: impl FnMut(u32, Outcome, &Monitor)) {
-    let mut robot = Watched::new();
-    for i in 0..STEPS {
-        let step = robot.drive();
-        let outcome = robot.monitor.step(&LAW, &step);
-        each(i, outcome, &robot.monitor);
     }
 }

@@ -1,6 +1,6 @@
 //! What a monitor makes of logs.
 
-use mindgap_core::monitor::{Alternative, DIRECTIONS, LARGER, Monitor, NAT_BITS, Outcome, SIZES};
+use mindgap_core::monitor::{Alternative, LARGER, Monitor, NAT_BITS, Outcome};
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -91,10 +91,7 @@ impl Findings {
                 }
             });
         }
-        let alternatives = (0..DIRECTIONS as u8)
-            .flat_map(|direction| (0..SIZES as u8).map(move |size| Alternative::Direction(direction, size)))
-            .chain([Alternative::Wider(0), Alternative::Wider(1)]);
-        let mut evidence: Vec<Evidence> = alternatives
+        let mut evidence: Vec<Evidence> = Alternative::all()
             .map(|alternative| {
                 let (what, size) = replay.what(alternative);
                 Evidence { what, size, nats: nats(monitor.evidence(alternative)) }
