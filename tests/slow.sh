@@ -7,7 +7,7 @@
 #   kills of commands with a checkpoint     2 of evolve, train, make and the loop     200 of all; 20 of calibrate and the demo
 #   a loop in two calls                     resumed after kills                       compared with one call as well
 #   numbers of ranks                        3                                         1, 2 and 4
-#   failing disk calls                      2 per quick command, 1 of three slow ones every call, twice; 8 also of the demo
+#   failing disk calls                      2 per quick command, 1 of the others      every call of quick ones, twice; 8 of the others
 #   the demo                                demo --quick: its files and texts         the whole demo: the target is reached
 #   cases of another robot                  three of 31                               all
 #   changes put into real logs              three and none in the last third          26 in each third, 13 in scans
@@ -20,7 +20,7 @@
 #   fuzz targets                            kept inputs and 1,000 made of them each   libFuzzer, for an hour
 #
 # tests/run.sh leaves out more samples of the same kind. Each kind of fault and format keeps at least one; kills and failing disks
-# of the demo and of the calibration, which consist of commands that are tested there, are left out and listed as skipped.
+# of slow commands that work like others, or consist of them, are left out and listed as skipped.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 exec </dev/null

@@ -43,9 +43,17 @@ impl Sandbox {
     /// # Panics
     /// If the folder cannot be copied.
     pub fn copy(&self) -> Self {
+        Sandbox::copy_of(self.path())
+    }
+
+    /// Returns a copy of what is in a folder, but not of its permissions: the originals may be read-only.
+    ///
+    /// # Panics
+    /// If the folder cannot be copied.
+    pub fn copy_of(folder: &Path) -> Self {
         let copy = Sandbox::new();
-        for (path, bytes) in self.listing() {
-            let to = copy.path().join(path.strip_prefix(self.path()).expect("a path below this folder"));
+        for (path, bytes) in listing(folder) {
+            let to = copy.path().join(path.strip_prefix(folder).expect("a path below this folder"));
             if path.is_dir() { fs::create_dir(to) } else { fs::write(to, bytes) }
                 .expect("a folder that can be written");
         }
@@ -176,10 +184,7 @@ impl Sandbox {
 
     /// Returns every file and folder below this folder, in order, with the bytes of the files.
     pub fn listing(&self) -> Vec<(PathBuf, Vec<u8>)> {
-        let mut files = Vec::new();
-        collect(self.path(), &mut files);
-        files.sort();
-        files
+        listing(self.path())
     }
 
     /// Runs a process and returns its result.
@@ -197,6 +202,13 @@ impl Default for Sandbox {
     fn default() -> Self {
         Self::new()
     }
+}
+
+fn listing(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
+    let mut files = Vec::new();
+    collect(folder, &mut files);
+    files.sort();
+    files
 }
 
 fn collect(folder: &Path, files: &mut Vec<(PathBuf, Vec<u8>)>) {

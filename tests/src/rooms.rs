@@ -1,8 +1,8 @@
-//! A small room with its simulator, and a small challenge.
+//! A small room with its simulator, a simulator trained on more logs, and a small challenge.
 
 use std::sync::LazyLock;
 
-use crate::command::Sandbox;
+use crate::command::{Sandbox, program};
 
 /// A room with one obstacle, a target and two starts.
 pub const SCENE: &str = "\
@@ -48,6 +48,17 @@ pub fn with_scene() -> Sandbox {
     sandbox
 }
 
+/// Returns a folder with forty runs in `logs` and a simulator in `sim.json` that was trained on them.
+pub fn with_forty_runs() -> Sandbox {
+    static FORTY_RUNS: LazyLock<Sandbox> = LazyLock::new(|| {
+        let sandbox = Sandbox::new();
+        sandbox.run("record --out logs --runs 40 --seed 1");
+        sandbox.run("train logs --out sim.json");
+        sandbox
+    });
+    FORTY_RUNS.copy()
+}
+
 /// Returns a folder with short cases of a challenge in `blind`.
 pub fn challenge(cases: usize) -> Sandbox {
     let sandbox = Sandbox::new();
@@ -57,12 +68,8 @@ pub fn challenge(cases: usize) -> Sandbox {
 
 /// Writes `robot.sh`, which drives the built-in robot with a weak motor for `mindgap loop`. The shell code `before` may change the
 /// arguments, and `after` may change the log, the file `$4`.
-///
-/// # Panics
-/// If the path of the command is not UTF-8.
 pub fn robot(sandbox: &Sandbox, before: &str, after: &str) {
-    let command = sandbox.command("");
-    let mindgap = command.get_program().to_str().expect("a path in UTF-8");
+    let mindgap = program().display();
     let drive = format!("'{mindgap}' drive \"$1\" --scene \"$2\" --start \"$3\" --out \"$4\" --seed \"$5\"");
     sandbox.write("robot.sh", format!("set -e\n{before}\n{drive} --effect motor_asymmetry=0.1\n{after}\n"));
 }

@@ -4,15 +4,14 @@ use std::sync::LazyLock;
 
 use mindgap_tests::command::Sandbox;
 use mindgap_tests::nbc::compile;
+use mindgap_tests::rooms::with_forty_runs;
 use serde_json::{Value, json};
 
 /// Returns a folder with a simulator and held-out logs.
 fn sandbox() -> Sandbox {
     static MADE: LazyLock<Sandbox> = LazyLock::new(|| {
-        let sandbox = Sandbox::new();
-        sandbox.run("record --out logs --runs 40 --steps 60 --seed 1");
+        let sandbox = with_forty_runs();
         sandbox.run("record --out held-out --runs 5 --steps 30 --seed 2");
-        sandbox.run("train logs --out sim.json");
         sandbox
     });
     MADE.copy()

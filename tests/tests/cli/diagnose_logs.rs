@@ -1,12 +1,11 @@
 //! `mindgap diagnose` on logs with little information, and on logs of another robot than the simulator's.
 
 use std::fs;
-use std::sync::LazyLock;
 
 use mindgap_logs::Run;
 use mindgap_tests::command::Sandbox;
 use mindgap_tests::form::{short_or_long, spread};
-use mindgap_tests::rooms::{trained, with_scene};
+use mindgap_tests::rooms::{trained, with_forty_runs, with_scene};
 use serde_json::Value;
 
 /// Number of runs in the logs.
@@ -177,17 +176,6 @@ fn final_positions_of_a_controller_are_compared() {
     assert_eq!(sandbox.json("diagnosis.json")["endings"]["runs"], RUNS);
     let refusal = sandbox.refused("diagnose kinematic logs --controller controller.toml");
     assert!(refusal.contains("needs a simulator file"), "{refusal}");
-}
-
-/// Returns a folder with forty runs in `logs` and a simulator in `sim.json` that was trained on them.
-fn with_forty_runs() -> Sandbox {
-    static FORTY_RUNS: LazyLock<Sandbox> = LazyLock::new(|| {
-        let sandbox = Sandbox::new();
-        sandbox.run("record --out logs --runs 40 --seed 1");
-        sandbox.run("train logs --out sim.json");
-        sandbox
-    });
-    FORTY_RUNS.copy()
 }
 
 /// The effect that the simulator's own error imitates grows with the amount of logs.

@@ -12,6 +12,8 @@ use std::time::{Duration, Instant};
 use mindgap_tests::command::{Outcome, Sandbox};
 use mindgap_tests::rooms::{robot, with_scene};
 
+use super::ended::kill;
+
 const LOOP: &str = "loop out --sim sim.json --scene scene.toml --max-steps 20 --trials 1";
 /// A driver that says when it has begun, and when it was asked to stop its motors.
 const POLITE: &str = "trap 'echo > stopped; exit 1' TERM; echo $$ > begun; while :; do sleep 0.1; done";
@@ -47,8 +49,9 @@ fn alive(sandbox: &Sandbox) -> Vec<String> {
     here.map(|process| process.file_name().to_string_lossy().into_owned()).collect()
 }
 
+/// Asserts that no process works in a folder, and that no temporary file is there.
 #[track_caller]
-fn assert_nothing_is_left(sandbox: &Sandbox, driver: &str) {
+pub(super) fn assert_nothing_is_left(sandbox: &Sandbox, driver: &str) {
     assert_eq!(alive(sandbox), Vec::<String>::new(), "{driver}");
     let temporary = sandbox.listing().into_iter().find(|(path, _)| path.to_string_lossy().contains(".mindgap-"));
     assert_eq!(temporary.map(|(path, _)| path), None, "{driver}");
@@ -114,7 +117,7 @@ fn a_signal_ends_the_driver_too() {
     for (signal, number) in [("TERM", 15), ("INT", 2), ("HUP", 1), ("QUIT", 3)] {
         let sandbox = planned.copy();
         let mut child = driving(&sandbox, POLITE);
-        kill(&child.id().to_string(), signal);
+        kill(child.id(), signal);
         assert_eq!(child.wait().expect("it ends").signal(), Some(number), "{signal}");
         assert!(sandbox.path().join("stopped").exists(), "{signal}: the motors had time to stop");
         assert_nothing_is_left(&sandbox, signal);
@@ -126,9 +129,9 @@ fn a_second_signal_ends_the_driver_at_once() {
     let sandbox = planned();
     let mut child = driving(&sandbox, STUBBORN);
     let begun = Instant::now();
-    kill(&child.id().to_string(), "INT");
+    kill(child.id(), "INT");
     thread::sleep(Duration::from_millis(300));
-    kill(&child.id().to_string(), "INT");
+    kill(child.id(), "INT");
     child.wait().expect("it ends");
     assert!(begun.elapsed() < Duration::from_secs(2), "{:?}", begun.elapsed());
     assert_nothing_is_left(&sandbox, "hurried");
@@ -142,10 +145,10 @@ fn a_loop_under_nohup_ignores_the_end_of_its_terminal() {
     let loops = command(&sandbox, "--robot-timeout 60");
     shell.arg(loops.get_program()).args(loops.get_args()).current_dir(sandbox.path());
     let mut child = begun(&sandbox, shell);
-    kill(&child.id().to_string(), "HUP");
+    kill(child.id(), "HUP");
     thread::sleep(Duration::from_millis(300));
     assert!(child.try_wait().expect("a child").is_none());
-    kill(&child.id().to_string(), "TERM");
+    kill(child.id(), "TERM");
     child.wait().expect("it ends");
 }
 
@@ -160,7 +163,7 @@ fn a_second_loop_in_a_folder_is_refused() {
         assert_eq!(problem.lines().count(), 1, "{problem}");
     };
     refused();
-    kill(&child.id().to_string(), "KILL");
+    kill(child.id(), "KILL");
     child.wait().expect("it ends");
     refused();
     kill(sandbox.text("begun").trim(), "KILL");
@@ -233,9 +236,4 @@ fn begun(sandbox: &Sandbox, mut command: Command) -> Child {
         thread::sleep(Duration::from_millis(20));
     }
     child
-}
-
-fn kill(id: &str, signal: &str) {
-    let sent = Command::new("kill").args([&format!("-{signal}"), id]).status();
-    assert!(sent.expect("kill is there").success());
 }

@@ -1,5 +1,6 @@
 //! Commands that are interrupted, exhaust a resource, or write to the same place as another.
 
+use std::fmt::Display;
 use std::fs::{self, File};
 use std::os::unix::process::ExitStatusExt;
 use std::process::{Child, Command, Stdio};
@@ -16,7 +17,7 @@ fn an_interrupted_command_leaves_no_file() {
     for (signal, number) in [("INT", 2), ("TERM", 15)] {
         let sandbox = Sandbox::new();
         let mut child = at_work(&sandbox);
-        kill(&child, signal);
+        kill(child.id(), signal);
         assert_eq!(child.wait().expect("it ends").signal(), Some(number));
         assert_eq!(sandbox.listing(), [], "{signal}");
     }
@@ -26,12 +27,12 @@ fn an_interrupted_command_leaves_no_file() {
 fn the_next_command_removes_files_of_a_killed_one() {
     let sandbox = Sandbox::new();
     let [mut killed, mut other] = [(); 2].map(|()| at_work(&sandbox));
-    kill(&killed, "KILL");
+    kill(killed.id(), "KILL");
     assert!(killed.wait().expect("it ends").code().is_none());
     assert_eq!(temporary(&sandbox), 2);
     sandbox.run("record --out logs --runs 1 --steps 5");
     assert_eq!(temporary(&sandbox), 1, "what another process is at work on stays");
-    kill(&other, "TERM");
+    kill(other.id(), "TERM");
     other.wait().expect("it ends");
     assert_eq!(temporary(&sandbox), 0);
 }
@@ -156,7 +157,8 @@ fn temporary(sandbox: &Sandbox) -> usize {
     entries.flatten().filter(|entry| entry.file_name().to_string_lossy().starts_with(".mindgap-")).count()
 }
 
-fn kill(child: &Child, signal: &str) {
-    let sent = Command::new("kill").args([format!("-{signal}"), child.id().to_string()]).status();
+/// Sends a signal to a process.
+pub(super) fn kill(id: impl Display, signal: &str) {
+    let sent = Command::new("kill").args([format!("-{signal}"), id.to_string()]).status();
     assert!(sent.expect("kill is there").success());
 }

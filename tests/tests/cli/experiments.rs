@@ -5,8 +5,11 @@ use std::process::Command;
 use std::sync::LazyLock;
 use std::thread;
 
-use mindgap_tests::command::{Outcome, Sandbox};
+use mindgap_tests::command::{Outcome, Sandbox, program};
 use mindgap_tests::form::{is_long, short_or_long, spread};
+use mindgap_tests::rooms::with_forty_runs;
+
+use super::drivers::assert_nothing_is_left;
 
 /// A small weaker motor, which six runs do not tell from others.
 const FAULT: &str = "--effect payload=0.03";
@@ -14,9 +17,7 @@ const FAULT: &str = "--effect payload=0.03";
 /// Returns a folder with a simulator, and logs in `laden` that leave several names.
 fn undecided() -> Sandbox {
     static UNDECIDED: LazyLock<Sandbox> = LazyLock::new(|| {
-        let sandbox = Sandbox::new();
-        sandbox.run("record --out logs --runs 40 --seed 1");
-        sandbox.run("train logs --out sim.json");
+        let sandbox = with_forty_runs();
         sandbox.run(&format!("record --out laden --runs 6 --seed 5 {FAULT}"));
         sandbox
     });
@@ -24,9 +25,8 @@ fn undecided() -> Sandbox {
 }
 
 /// Returns the shell code that drives the built-in robot.
-fn good(sandbox: &Sandbox) -> String {
-    let command = sandbox.command("");
-    let mindgap = command.get_program().to_str().expect("a path in UTF-8");
+fn good() -> String {
+    let mindgap = program().display();
     format!("'{mindgap}' drive \"$1\" --scene laden/scene.toml --out \"$2\" --seed \"$3\" {FAULT}")
 }
 
@@ -43,7 +43,7 @@ fn driven(sandbox: &Sandbox, options: &str) -> Outcome {
 #[test]
 fn scripts_are_driven_until_the_runs_are_used_up_and_a_series_is_resumed() {
     let sandbox = undecided();
-    let drive = good(&sandbox);
+    let drive = good();
     sandbox.write("my driver.sh", format!("echo \"$@\" >> calls\n{drive} > /dev/null\n"));
     let first = driven(&sandbox, "--runs 1 --json first.json");
     assert_eq!(first.code, 0, "{}", first.err);
@@ -69,7 +69,7 @@ fn scripts_are_driven_until_the_runs_are_used_up_and_a_series_is_resumed() {
         return;
     }
     let whole = undecided();
-    whole.write("my driver.sh", format!("{} > /dev/null\n", good(&whole)));
+    whole.write("my driver.sh", format!("{} > /dev/null\n", good()));
     assert_eq!(driven(&whole, "--runs 2").code, 0);
     assert_eq!(whole.files("series"), sandbox.files("series"));
 }
@@ -118,26 +118,16 @@ fn drivers_that_fail_twice_end_the_series_in_one_line() {
                 assert!(last.contains(problem), "{driver}: {}", outcome.err);
                 let left = ["series/run-000.csv", "result.json"].map(|name| sandbox.path().join(name).exists());
                 assert_eq!(left, [false; 2], "{driver}");
-                let temporary =
-                    sandbox.listing().into_iter().find(|(path, _)| path.to_string_lossy().contains(".mindgap-"));
-                assert_eq!(temporary.map(|(path, _)| path), None, "{driver}");
-                assert_eq!(alive(&sandbox), 0, "{driver}");
+                assert_nothing_is_left(&sandbox, driver);
             });
         }
     });
 }
 
-/// Returns the number of living processes that work in a folder.
-fn alive(sandbox: &Sandbox) -> usize {
-    let folder = fs::canonicalize(sandbox.path()).expect("a folder");
-    let processes = fs::read_dir("/proc").expect("processes").flatten();
-    processes.filter(|process| fs::read_link(process.path().join("cwd")).is_ok_and(|cwd| cwd == folder)).count()
-}
-
 #[test]
 fn a_run_that_fails_once_is_driven_again() {
     let sandbox = undecided();
-    let drive = good(&sandbox);
+    let drive = good();
     sandbox.write("my driver.sh", format!("if mkdir once 2> /dev/null; then exit 5; fi\n{drive} > /dev/null\n"));
     // Without a folder for them, the logs are not kept.
     let mut command = sandbox.command("diagnose sim.json laden --runs 1");

@@ -8,7 +8,7 @@ use std::path::PathBuf;
 use std::process::Command;
 
 use mindgap_tests::command::{Outcome, Sandbox, program};
-use mindgap_tests::form::{is_long, is_skipped, short_or_long, spread};
+use mindgap_tests::form::{is_skipped, short_or_long, spread};
 use mindgap_tests::rooms::{challenge, robot, trained, with_scene};
 use rayon::prelude::*;
 
@@ -94,9 +94,8 @@ fn slow_commands_leave_complete_files_when_a_disk_fails() {
     }
 }
 
-/// Commands that write one result after the other or keep a checkpoint leave complete results and resume.
 #[test]
-fn commands_with_checkpoints_leave_complete_files_when_a_disk_fails() {
+fn evolution_leaves_complete_files_when_a_disk_fails() {
     let sandbox = with_scene();
     assert_whole(
         &sandbox,
@@ -104,9 +103,14 @@ fn commands_with_checkpoints_leave_complete_files_when_a_disk_fails() {
         few(),
         AllOrNothing,
     );
-    if is_long() {
-        assert_whole(&challenge(2), "challenge answer blind", few(), Stages);
+}
+
+#[test]
+fn answers_of_a_challenge_are_complete_when_a_disk_fails() {
+    if is_skipped() {
+        return;
     }
+    assert_whole(&challenge(2), "challenge answer blind", few(), Stages);
 }
 
 /// The robot's command is another program, whose calls do not fail: `strace` detaches from it.

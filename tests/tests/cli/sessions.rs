@@ -3,14 +3,13 @@
 use std::sync::LazyLock;
 
 use mindgap_tests::command::Sandbox;
+use mindgap_tests::rooms::with_forty_runs;
 use serde_json::Value;
 
 /// Returns a folder with a simulator and four sessions: two on tiles, and two on a carpet on which the robot turns less.
 fn four_sessions() -> Sandbox {
     static SESSIONS: LazyLock<Sandbox> = LazyLock::new(|| {
-        let sandbox = Sandbox::new();
-        sandbox.run("record --out logs --runs 40 --seed 1");
-        sandbox.run("train logs --out sim.json");
+        let sandbox = with_forty_runs();
         for (day, fault) in [(1, ""), (2, CARPET), (3, ""), (4, CARPET)] {
             let floor = if fault.is_empty() { "tiles" } else { "carpet" };
             sandbox.run(&format!("record --out days/{day} --runs 8 --seed {} {fault}", 10 + day));

@@ -78,16 +78,11 @@ fn sensors_are_shown_by_check_info_and_the_textbook() {
 /// Writes one number into every cell of a sensor.
 fn stick(sandbox: &Sandbox, runs: usize, column: &str) {
     for run in 0..runs {
-        sandbox.edit(&format!("logs/run-{run:03}.csv"), |text| {
-            let index = text.lines().next().and_then(|header| header.split(',').position(|name| name == column));
-            let stuck = |line: &str| {
-                let mut cells: Vec<&str> = line.split(',').collect();
-                cells[index.expect("a column")] = "87";
-                cells.join(",") + "\n"
-            };
-            let (header, rows) = text.split_once('\n').expect("rows");
-            format!("{header}\n{}", rows.lines().map(stuck).collect::<String>())
-        });
+        let file = format!("logs/run-{run:03}.csv");
+        let text = sandbox.text(&file);
+        let index = text.lines().next().and_then(|header| header.split(',').position(|name| name == column));
+        let index = index.expect("a column");
+        sandbox.edit_cells(&file, |cells| cells[index] = "87");
     }
 }
 
