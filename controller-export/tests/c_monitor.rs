@@ -15,8 +15,8 @@ use mindgap_core::fixed_network::{FixedNetwork, FixedScaling};
 use mindgap_core::folded::PowerSum;
 use mindgap_core::heapless::Vec as FixedVec;
 use mindgap_core::monitor::{
-    Alternative, CHANNELS, Correction, FUNCTIONS, Factor, Gains, HELD, Law, Monitor, NAT_BITS, Outcome,
-    POINTS, Step, TRAVELS, Whitening,
+    Alternative, CHANNELS, Correction, FUNCTIONS, Factor, Gains, HELD, Law, Monitor, NAT_BITS, Outcome, POINTS, Step,
+    TRAVELS, Whitening,
 };
 use mindgap_core::network::Activation;
 use mindgap_core::rand_core::{Rng, SeedableRng};

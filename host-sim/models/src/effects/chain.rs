@@ -14,12 +14,22 @@ use mindgap_logs::Robot;
 pub struct EffectChain {
     /// What lies between commands and networks: the filter that these were learned behind, as effects change it.
     drive: FilteredDrive,
-    links: Vec<(&'static Variant, Vec<f64>)>,
+    links: Vec<Link>,
+    late: Late,
+    lagging_heading: Option<LaggingHeading>,
 }
+
+/// A form of an effect with its parameters.
+type Link = (&'static Variant, Vec<f64>);
 
 impl Default for EffectChain {
     fn default() -> Self {
-        EffectChain { drive: DriveFilter::default().into(), links: Vec::new() }
+        EffectChain {
+            drive: DriveFilter::default().into(),
+            links: Vec::new(),
+            late: Late::default(),
+            lagging_heading: None,
+        }
     }
 }
 
@@ -43,7 +53,7 @@ impl EffectChain {
         self.followed_by(self.drive.filter(), links)
     }
 
-    fn followed_by(&self, mut filter: DriveFilter, links: impl Iterator<Item = (&'static Variant, Vec<f64>)>) -> Self {
+    fn followed_by(&self, mut filter: DriveFilter, links: impl Iterator<Item = Link>) -> Self {
         let further: Vec<_> = links.collect();
         for (variant, values) in &further {
             for hook in variant.hooks {
@@ -54,7 +64,9 @@ impl EffectChain {
                 }
             }
         }
-        EffectChain { drive: filter.into(), links: [self.links.as_slice(), &further].concat() }
+        let links = [self.links.as_slice(), &further].concat();
+        let (late, lagging_heading) = (late(&links), lagging_heading(&links));
+        EffectChain { drive: filter.into(), links, late, lagging_heading }
     }
 
     /// Returns whether it changes nothing.
@@ -79,17 +91,17 @@ impl EffectChain {
 
     /// Returns the motion of a step with these effects; `step` predicts it without them, for the commands now and before.
     pub fn wrap(&self, context: &StepContext, mut step: impl FnMut([f64; 2], [f64; 2]) -> Motion<f64>) -> Motion<f64> {
-        let (speeds, late) = (self.speeds(context), self.late());
+        let speeds = self.speeds(context);
         let mut moved = |steps_ago: usize, is_held: bool| {
             let speeds = |ago| {
                 let speeds = speeds(steps_ago + ago);
                 if is_held { StepSpeeds { before: speeds.now, drift_cm: 0.0, ..speeds } } else { speeds }
             };
-            let mut increment = delayed(speeds, late, &mut step);
+            let mut increment = delayed(speeds, self.late, &mut step);
             self.change_motion(context, &mut increment);
             increment
         };
-        let Some(lag) = self.lagging_heading() else { return moved(0, false) };
+        let Some(lag) = self.lagging_heading else { return moved(0, false) };
         let error_rad = lag.error_rad(|ago| Turns { rad: moved(ago, false).turn, held_rad: moved(ago, true).turn });
         let held_rad = moved(0, true).turn;
         lag.seen(moved(0, false), held_rad, error_rad)
@@ -98,30 +110,24 @@ impl EffectChain {
     /// Returns the same for a robot without any memory but that of its filter; `step` predicts a step under a held command.
     /// Where commands change within a step, each piece is a part of such a step, and effects change the motion of each.
     pub fn wrap_pieces(&self, context: &StepContext, step: impl Fn([f64; 2]) -> Motion<f64>) -> Motion<f64> {
-        if context.pieces.is_empty() || self.lagging_heading().is_some() {
+        if context.pieces.is_empty() || self.lagging_heading.is_some() {
             return self.wrap(context, |now, _| step(now));
         }
-        let (phases, late) = (self.phases(context), self.late());
-        let motion = |late_steps: f64| {
+        let phases = self.phases(context);
+        interpolated(self.late, |late_steps| {
             let pieces = self.drive.pieces(&phases, late_steps, &context.robot);
             pieces.into_iter().fold(Motion::ZERO, |so_far, (duration, speeds)| {
                 let mut held = step(speeds);
                 self.change_motion(context, &mut held);
                 so_far.then(held.arc().scaled(duration).motion())
             })
-        };
-        let (whole, part) = (libm::floor(late.poses_steps), late.poses_steps % 1.0);
-        let latest = motion(late.drive_steps + whole);
-        if part == 0.0 {
-            return latest;
-        }
-        weighted([(1.0 - part, latest), (part, motion(late.drive_steps + whole + 1.0))])
+        })
     }
 
     /// Returns the motion that a robot would hold with these effects if it kept the speed with which a step begins; `hold`
     /// predicts it without them, for held commands.
     pub fn begin(&self, context: &StepContext, mut hold: impl FnMut([f64; 2]) -> Motion<f64>) -> Motion<f64> {
-        let StepSpeeds { before, .. } = self.speeds(context)(self.late().drive_steps as usize);
+        let StepSpeeds { before, .. } = self.speeds(context)(self.late.drive_steps as usize);
         let mut increment = hold(before);
         self.change_motion(context, &mut increment);
         increment
@@ -140,9 +146,9 @@ impl EffectChain {
 
     /// Returns the commands of a step in its phases, as they reach the filter.
     fn phases(&self, context: &StepContext) -> Phases {
-        let late = self.late();
+        let late = self.late;
         let memory_steps = self.drive.memory_steps(&context.commands, &context.robot);
-        let heading_steps = self.lagging_heading().map_or(0, |lag| lag.reach_steps()) as f64;
+        let heading_steps = self.lagging_heading.map_or(0, |lag| lag.reach_steps()) as f64;
         // Poses that are late by a fraction of a step need the step before.
         let reach_steps = memory_steps + late.drive_steps + late.poses_steps.ceil() + heading_steps;
         let mut phases = context.pieces.phases(&context.commands, reach_steps);
@@ -169,28 +175,6 @@ impl EffectChain {
         commands
     }
 
-    fn late(&self) -> Late {
-        let mut late = Late::default();
-        self.each(|hook, values| {
-            if let Hook::Delay(delay) = hook {
-                let more = delay(values);
-                late.drive_steps += more.drive_steps;
-                late.poses_steps += more.poses_steps;
-            }
-        });
-        late
-    }
-
-    fn lagging_heading(&self) -> Option<LaggingHeading> {
-        let mut lag_steps = 0.0;
-        self.each(|hook, values| {
-            if let Hook::HeadingLag(steps) = hook {
-                lag_steps += steps(values);
-            }
-        });
-        LaggingHeading::new(lag_steps)
-    }
-
     fn change_motion(&self, context: &StepContext, increment: &mut Motion<f64>) {
         self.each(|hook, values| {
             if let Hook::Motion(change) | Hook::MotionHere(change) = hook {
@@ -210,27 +194,57 @@ impl EffectChain {
         sensor
     }
 
-    fn each(&self, mut visit: impl FnMut(&Hook, &[f64])) {
-        for (variant, values) in &self.links {
-            variant.hooks.iter().for_each(|hook| visit(hook, values));
-        }
+    fn each(&self, visit: impl FnMut(&Hook, &[f64])) {
+        each(&self.links, visit);
     }
 }
 
-/// Returns the delayed motion; `speeds` returns what the networks see of a step, by how long ago it was, in steps. Poses that
-/// are late by a fraction of a step lie between those of two rows.
+fn each(links: &[Link], mut visit: impl FnMut(&Hook, &[f64])) {
+    for (variant, values) in links {
+        variant.hooks.iter().for_each(|hook| visit(hook, values));
+    }
+}
+
+fn late(links: &[Link]) -> Late {
+    let mut late = Late::default();
+    each(links, |hook, values| {
+        if let Hook::Delay(delay) = hook {
+            let more = delay(values);
+            late.drive_steps += more.drive_steps;
+            late.poses_steps += more.poses_steps;
+        }
+    });
+    late
+}
+
+fn lagging_heading(links: &[Link]) -> Option<LaggingHeading> {
+    let mut lag_steps = 0.0;
+    each(links, |hook, values| {
+        if let Hook::HeadingLag(steps) = hook {
+            lag_steps += steps(values);
+        }
+    });
+    LaggingHeading::new(lag_steps)
+}
+
+/// Returns the delayed motion; `speeds` returns what the networks see of a step, by how long ago it was, in steps.
 fn delayed(
     speeds: impl Fn(usize) -> StepSpeeds,
     late: Late,
     step: &mut impl FnMut([f64; 2], [f64; 2]) -> Motion<f64>,
 ) -> Motion<f64> {
+    interpolated(late, |late_steps| driven_late(&speeds, late_steps, step))
+}
+
+/// Returns the delayed motion; `motion` returns that of a drive which is late by this number of steps. Poses that are late by a
+/// fraction of a step lie between those of two rows.
+fn interpolated(late: Late, mut motion: impl FnMut(f64) -> Motion<f64>) -> Motion<f64> {
     let (whole, part) = (libm::floor(late.poses_steps), late.poses_steps % 1.0);
-    let motion = driven_late(&speeds, late.drive_steps + whole, step);
+    let latest = motion(late.drive_steps + whole);
     if part == 0.0 {
-        return motion;
+        return latest;
     }
-    let earlier = driven_late(&speeds, late.drive_steps + whole + 1.0, step);
-    weighted([(1.0 - part, motion), (part, earlier)])
+    weighted([(1.0 - part, latest), (part, motion(late.drive_steps + whole + 1.0))])
 }
 
 /// Returns the motion of a drive that is late by this number of steps. For a fraction of a step, the earlier step extends into
