@@ -298,12 +298,12 @@ impl Parameter {
         settings.filter_map(|(_, setting)| setting.number()).next()
     }
 
-    /// Returns how far a reported number lies from neutral. A speed limit departs from full speed, a ramp from none at all, which is
-    /// infinitely steep, by its own value, and a direction by one radian.
+    /// Returns how far a reported number lies from neutral. A speed limit departs from full speed; a ramp and an onset of slip depart
+    /// by their own value, since none at all would be infinitely steep or late; and a direction departs by one radian.
     pub fn departure(&self, number: f64, robot: &Robot) -> f64 {
         let neutral = self.number(self.nominal, robot);
         match self.report {
-            Report::RateLimit(_) | Report::TurnRateLimit => number.abs(),
+            Report::RateLimit(_) | Report::TurnRateLimit | Report::Onset => number.abs(),
             Report::SpeedLimit(_) | Report::Command => {
                 neutral.map_or(number, |neutral| number - neutral.min(FULL_COMMAND)).abs()
             }

@@ -13,11 +13,16 @@ pub const EFFECT: Effect = Effect {
     place: Some(Place::Sensor),
     needs_known_robot: false,
     variants: &[Variant {
-        id: "two_states",
+        id: "lost_share",
         parameters: Dropout::PARAMETERS,
         hooks: &[Hook::Sensor(&|v, context, sensor| {
             let Dropout { persistence, probability } = Dropout::read(v);
-            let lost = if context.echo_before == Some(false) { persistence } else { probability };
+            // Over many readings the chain loses the share that a first reading loses.
+            let lost = match context.echo_before {
+                Some(false) => persistence,
+                Some(true) => (probability * (1.0 - persistence) / (1.0 - probability)).min(1.0),
+                None => probability,
+            };
             sensor.perturbation.p_dropout = 1.0 - (1.0 - sensor.perturbation.p_dropout) * (1.0 - lost);
         })],
     }],
@@ -27,7 +32,7 @@ parameters! {
     Dropout {
         /// Chance that a missing reading is followed by another, as a two-state chain has it: anything from none to all.
         persistence: Parameter::new("", 0.0, [0.0, 1.0]).from(Guesses::At(&[0.3, 0.6])),
-        /// Chance that a burst begins. A sensor that loses every second reading is broken.
+        /// Share of readings that are lost. A sensor that loses every second reading is broken.
         probability: Parameter::new("", 0.0, [0.0, 0.5]).prior_sd(0.2).from(Guesses::At(&[0.05, 0.1])),
     }
 }
