@@ -6,7 +6,7 @@ use super::frame::{Frame, GAP_MS};
 use super::motion::{CumulativeMotion, by_camera};
 use super::report::TrackReport;
 use mindgap_foundations::error::{Error, Result};
-use mindgap_foundations::geometry::{Pose, wrap_rad};
+use mindgap_foundations::geometry::Pose;
 use mindgap_logs::Robot;
 
 /// A camera track.
@@ -112,10 +112,7 @@ impl Track {
         if span_ms > GAP_MS {
             return Sighting::Lost;
         }
-        let share = (t_ms - before.t_ms) / span_ms;
-        let turn_rad = wrap_rad(after.pose.heading_rad - before.pose.heading_rad);
-        let at_cm = before.pose.position_cm.lerp(after.pose.position_cm, share);
-        Sighting::At(Pose::new(at_cm.x, at_cm.y, before.pose.heading_rad + share * turn_rad))
+        Sighting::At(before.pose.between(&after.pose, (t_ms - before.t_ms) / span_ms))
     }
 }
 

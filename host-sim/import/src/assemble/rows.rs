@@ -9,7 +9,6 @@ use crate::own_motion::OwnMotion;
 use crate::recording::{Commands, Readings, Recording};
 use crate::track::Track;
 use mindgap_foundations::error::{Error, Result};
-use mindgap_foundations::geometry::{Pose, wrap_rad};
 use mindgap_foundations::statistics::summary::median;
 use mindgap_logs::range_sensor::Sensors;
 use mindgap_logs::{CommandChange, CommandChanges, Robot, Row, Rows, Run};
@@ -199,10 +198,7 @@ fn track(file: &Path, poses: &[Option<Frame>], robot: &Robot) -> Result<(Track, 
 }
 
 fn between(from: &Frame, to: &Frame, share: f64) -> Frame {
-    let turn_rad = wrap_rad(to.pose.heading_rad - from.pose.heading_rad);
-    let at_cm = from.pose.position_cm.lerp(to.pose.position_cm, share);
-    let pose = Pose::new(at_cm.x, at_cm.y, from.pose.heading_rad + share * turn_rad);
-    Frame { t_ms: from.t_ms + share * (to.t_ms - from.t_ms), pose }
+    Frame { t_ms: from.t_ms + share * (to.t_ms - from.t_ms), pose: from.pose.between(&to.pose, share) }
 }
 
 /// Returns the median interval of frames, ms; NaN with fewer than two.
