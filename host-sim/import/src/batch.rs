@@ -73,7 +73,7 @@ impl Batch {
         self.hold_places_of_failed();
         let Batch { complete, commands, poses, measurements, .. } = &self;
         let has_shared_track = poses.len() == 1 && commands.len() > 1;
-        let is_matched = (commands.len() == poses.len() || has_shared_track)
+        let is_matched = (commands.len() == poses.len() || has_shared_track || self.measure_themselves())
             && measurements.iter().all(|files| files.len() == commands.len());
         if !is_matched || (complete.is_empty() && commands.is_empty()) {
             return Err(self.mismatch());
@@ -102,6 +102,13 @@ impl Batch {
         Ok(drives)
     }
 
+    /// Returns whether there are no poses, and every drive shows its motion by what the robot measured of it.
+    fn measure_themselves(&self) -> bool {
+        let shows_motion = |entry: &Entry| entry.parts.first().is_some_and(FileStreams::shows_motion);
+        let is_measured_beside = self.measurements.iter().any(|files| files.first().is_some_and(shows_motion));
+        self.poses.is_empty() && (is_measured_beside || self.commands.iter().all(shows_motion))
+    }
+
     /// Takes the commands from files with commands alone, where there is one for each file that has speeds next to its poses.
     fn use_separate_commands(&mut self, left_out: &mut Vec<LeftOut>) {
         let spare = self.commands.len().saturating_sub(self.poses.len());
@@ -121,6 +128,10 @@ impl Batch {
 
     /// Puts empty entries for the files that cannot be read, so that the others keep their partners.
     fn hold_places_of_failed(&mut self) {
+        // Most are drives by themselves.
+        if self.commands.len() > self.failed.len() && self.measure_themselves() {
+            return;
+        }
         // Where all others have a partner, a single one held measurements alone.
         if self.commands.len() == self.poses.len() && (!self.complete.is_empty() || self.failed.len() < 2) {
             return;
@@ -169,8 +180,9 @@ impl Batch {
             .collect();
         let hint = if hints.is_empty() { String::new() } else { format!("; unused columns: {}", hints.join("; ")) };
         Error::new(format!(
-            "{} file(s) contain commands and poses, {} only commands, {} only poses, {} only readings, counters or a gyro: give one of each per drive, \
-             in the same order{hint}",
+            "{} file(s) contain commands and poses, {} only commands, {} only poses, {} only readings, rotation counters or a gyro: a \
+             drive needs commands, and poses or else rotation counters or a gyro; give one file of each per drive, in the same \
+             order{hint}",
             complete.len(),
             commands.len(),
             poses.len(),

@@ -69,6 +69,11 @@ impl FileStreams {
         (sensors, self.counters.each_ref().map(Vec::len), self.gyro.is_some())
     }
 
+    /// Returns whether it holds what the robot measured of its motion: the wheels of both sides, or a gyro.
+    pub fn shows_motion(&self) -> bool {
+        self.gyro.is_some() || self.counters.iter().all(|wheels| !wheels.is_empty())
+    }
+
     /// Reads a file; more than one if the recording was restarted within it.
     ///
     /// # Errors

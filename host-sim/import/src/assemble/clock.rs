@@ -1,4 +1,5 @@
-//! Finds one clock for commands and poses: the clock they share, or an alignment by their motion.
+//! Finds one clock for commands and poses, or what the robot measured of its motion if there are none: the clock they share, or an
+//! alignment by their motion.
 
 use crate::clocks::{Clocks, align, gains, lag};
 use crate::motion::CumulativeMotion;
@@ -46,16 +47,22 @@ pub fn aligned(
     if let Some(found) = found {
         return Ok(report(found.clocks, false, None, Some(found.unexplained)));
     }
+    // What the robot measured is its own, even if a counter runs backwards; a gyro shows nothing of straight travel.
+    if !prepared.is_tracked && (is_one_clock || lag.is_none()) {
+        let (lag_ms, unexplained) = lag.unzip();
+        return Ok(report(Clocks { offset_ms: 0.0, drift: 0.0 }, true, lag_ms, unexplained));
+    }
+    let shown_by = prepared.shown_by;
     let what = match lag {
         Some((_, unexplained)) => format!(
-            "commands and poses have nothing in common: {:.0} % of the motion is unexplained with the given times, and no clock \
-             offset fits; are they from one drive? (if so, state the lead of the poses' clock by --offset-ms)",
+            "commands and {shown_by} have nothing in common: {:.0} % of the motion is unexplained with the given times, and no clock \
+             offset fits; are they from one drive? (if so, state the lead of their clock by --offset-ms)",
             100.0 * unexplained
         ),
         // Nothing moves, or the times do not overlap.
         None => format!(
-            "commands ({}) and poses ({}) do not overlap or nothing moves, and no clock offset fits; state the lead of the \
-             poses' clock by --offset-ms",
+            "commands ({}) and {shown_by} ({}) do not overlap or nothing moves, and no clock offset fits; state the lead of \
+             their clock by --offset-ms",
             span(&commanded),
             span(&observed)
         ),

@@ -41,10 +41,14 @@ pub struct Prepared {
     pub commands: Commands,
     /// Number of commands that were saturated at the robot's full speed.
     pub saturated: usize,
-    /// The robot's poses.
+    /// The robot's poses; by dead reckoning if nobody tracked it.
     pub track: Track,
+    /// What shows the motion, in words.
+    pub shown_by: &'static str,
     /// Number of poses excluded as jumps.
     pub jumps: usize,
+    /// Whether anybody tracked it.
+    pub is_tracked: bool,
     readings: Vec<Readings>,
     own_motion: OwnMotion,
     /// The range sensors of the rows.
@@ -55,27 +59,39 @@ impl Prepared {
     /// Prepares a recording.
     ///
     /// # Errors
-    /// When many commands exceed the robot's speed, or its times span more than any recording.
+    /// When many commands exceed the robot's speed, its times span more than any recording, or nothing shows its motion.
     pub fn of(recording: &Recording, robot: &Robot) -> Result<Self> {
-        let file = recording.track.clone();
+        let file = recording.file.clone();
         let (commands, saturated) = recording.commands.as_motor_commands(robot, &file)?;
         if commands.samples.len() < 2 {
             return Err(Error::in_file(&file, format!("has only {} command(s)", commands.samples.len())));
         }
         check_span(&file, commands.samples.iter().map(|(ms, _)| *ms))?;
         check_span(&file, recording.poses.iter().flatten().map(|frame| frame.t_ms))?;
-        let (track, jumps) = track(&file, &recording.poses, robot)?;
         let (readings, own_motion) = (recording.readings.clone(), recording.own_motion.clone());
+        let is_tracked = recording.is_tracked();
+        let (track, jumps) = match is_tracked {
+            true => track(&file, &recording.poses, robot)?,
+            false => (reckoned(&file, &own_motion, robot)?, 0),
+        };
+        let shown_by = match is_tracked {
+            true => "poses",
+            false if own_motion.has_counters() => "rotation counters",
+            false => "a gyro",
+        };
         let sensors = Arc::default();
-        Ok(Prepared { file, commands, saturated, track, jumps, readings, own_motion, sensors })
+        Ok(Prepared { file, commands, saturated, track, shown_by, jumps, is_tracked, readings, own_motion, sensors })
     }
 
-    /// Checks that the robot moves.
+    /// Checks that the robot moves; a gyro alone does not show that.
     ///
     /// # Errors
     /// When it stays in its place.
     pub fn check_motion(&self) -> Result<()> {
         let frames = self.track.frames();
+        if !self.is_tracked && !self.own_motion.has_counters() {
+            return Ok(());
+        }
         let Some(first) = frames.first() else { return Ok(()) };
         let moved = frames.iter().map(|frame| first.pose.relative(&frame.pose));
         let (cm, rad) = moved.fold((0.0_f64, 0.0_f64), |(cm, rad), change| {
@@ -89,11 +105,13 @@ impl Prepared {
         let commands = match fastest {
             0.0 => "and all commands are zero".to_owned(),
             fastest => format!(
-                "although commands reach {fastest:.0} % of full speed: are the motors on, and is this the robot's own pose?"
+                "although commands reach {fastest:.0} % of full speed: are the motors on, and are these its own {}?",
+                self.shown_by
             ),
         };
         let what = format!(
-            "the robot never moves: its poses stay within {cm:.1} cm and {:.1} deg, {commands}",
+            "the robot never moves: its {} stay within {cm:.1} cm and {:.1} deg, {commands}",
+            self.shown_by,
             rad.to_degrees()
         );
         Err(Error::in_file(&self.file, what))
@@ -156,7 +174,7 @@ impl Prepared {
             t_ms: since_ms,
             left,
             right,
-            pose: self.track.at(camera_ms).pose(),
+            pose: self.track.at(camera_ms).pose().filter(|_| self.is_tracked),
             echo_cm: first.and_then(|readings| readings.at(times_ms, robot.step_ms)),
             rot_left_deg: angle_deg(0),
             rot_right_deg: angle_deg(1),
@@ -175,6 +193,18 @@ fn check_span(file: &Path, mut times_ms: impl Iterator<Item = f64>) -> Result<()
     }
     let what = format!("lasts {:.0} hours: its unit of time seems wrong; give --time-unit", span_ms / 3.6e6);
     Err(Error::in_file(file, what))
+}
+
+/// Returns the track of a robot that nobody tracked.
+fn reckoned(file: &Path, own_motion: &OwnMotion, robot: &Robot) -> Result<Track> {
+    let frames = own_motion.dead_reckoned(robot);
+    if frames.len() < 2 {
+        return Err(Error::in_file(
+            file,
+            "has neither poses nor rotation counters nor a gyro: nothing shows its motion",
+        ));
+    }
+    Ok(Track::without_check(file, frames))
 }
 
 /// Returns the track of poses, interpolated for slow trackers, and the number of jumps.

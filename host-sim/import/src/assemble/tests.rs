@@ -46,7 +46,7 @@ fn recording(poses: impl Fn(Frame) -> Frame) -> Recording {
     Recording {
         commands: Commands { kind: Kind::Twist, samples: samples.map(|ms| (ms, twist(ms))).collect() },
         poses: path().into_iter().step_by(3).map(|frame| Some(poses(frame))).collect(),
-        track: PathBuf::from("track.csv"),
+        file: PathBuf::from("track.csv"),
         readings: Vec::new(),
         own_motion: OwnMotion::default(),
         has_one_clock: false,
