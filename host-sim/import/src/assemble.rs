@@ -134,7 +134,7 @@ pub fn assemble(
 fn first_guess(recordings: &[Recording]) -> Result<RobotDraft> {
     let mut draft = RobotDraft::blank();
     draft.has_sensor = Some(recordings.iter().any(|recording| !recording.readings.is_empty()));
-    let spacing_ms = recordings.iter().map(|r| spacing_ms(&r.poses.iter().flatten().copied().collect::<Vec<_>>()));
+    let spacing_ms = recordings.iter().map(|recording| spacing_ms(&recording.poses));
     let spacing_ms = spacing_ms.fold(0.0, f64::max);
     if spacing_ms > draft.step_ms.value {
         draft.step_ms.value = 100.0 * (spacing_ms / 100.0).ceil();

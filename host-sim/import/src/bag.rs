@@ -374,11 +374,11 @@ fn is_of(name: &str, topic: &str) -> bool {
 }
 
 /// Projects poses onto the floor, and says how if z does not point up.
-fn on_floor(poses: Vec<(f64, Decoded)>) -> (Vec<Option<Frame>>, Option<String>) {
+fn on_floor(poses: Vec<(f64, Decoded)>) -> (Vec<Frame>, Option<String>) {
     let seen =
         poses.iter().filter_map(|(_, value)| if let Decoded::Pose(Some(pose)) = value { Some(pose) } else { None });
     let vertical = Axis::of_movement(seen);
-    let frames = poses.iter().map(|(t_ms, value)| match value {
+    let frames = poses.iter().filter_map(|(t_ms, value)| match value {
         Decoded::Pose(pose) => pose.map(|pose| vertical.frame(*t_ms, &pose)),
         _ => None,
     });

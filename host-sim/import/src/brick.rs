@@ -125,7 +125,7 @@ fn keep_heard(logs: &mut [BrickLog], sensors: &Sensors, warn: impl FnMut(String)
 }
 
 /// Reads the tracks in a file, one per body, and what is not used.
-fn tracks_in(file: &Path, stated: &Statements, robot: &Robot) -> Result<(Vec<Track>, Vec<LeftOut>)> {
+fn tracks_in(file: &Path, stated: &Statements, robot: &Robot) -> Result<(Vec<Track<'static>>, Vec<LeftOut>)> {
     let (mut tracks, mut unused, mut error) = (Vec::new(), Vec::new(), None);
     for FileStreams { bodies, source, .. } in FileStreams::read(file, stated)? {
         unused.extend(source.unused);
@@ -170,9 +170,9 @@ fn unused_bodies(tracks: &[Track], logs: &[LogReport]) -> Vec<LeftOut> {
 /// Returns the track that matches a log best with their alignment, or why none does.
 fn match_track<'a>(
     log: &BrickLog,
-    tracks: &'a [Track],
+    tracks: &'a [Track<'static>],
     robot: &Robot,
-) -> std::result::Result<(&'a Track, Alignment), String> {
+) -> std::result::Result<(&'a Track<'static>, Alignment), String> {
     let by_wheels = motion::by_wheels(&log.run.rows, robot);
     let found = tracks.iter().filter_map(|track| Some((track, align(&by_wheels, &track.motion())?)));
     let Some((track, found)) = found.min_by(|a, b| a.1.unexplained.total_cmp(&b.1.unexplained)) else {

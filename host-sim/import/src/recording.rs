@@ -14,8 +14,8 @@ use mindgap_logs::Robot;
 pub struct Recording {
     /// Commands to the robot.
     pub commands: Commands,
-    /// Tracked poses; `None` where the robot was lost. Empty if nobody tracked it.
-    pub poses: Vec<Option<Frame>>,
+    /// Poses where the robot was seen; none if nobody tracked it.
+    pub poses: Vec<Frame>,
     /// File of the poses, or of the commands if there are none.
     pub file: PathBuf,
     /// Readings of the range sensors that were heard, in the order of the sensors.
@@ -90,7 +90,7 @@ impl Kind {
 impl Recording {
     /// Returns whether any pose was tracked.
     pub fn is_tracked(&self) -> bool {
-        self.poses.iter().any(Option::is_some)
+        !self.poses.is_empty()
     }
 
     /// Corrects negative readings, and reports that.

@@ -119,7 +119,7 @@ fn joined(files: Drive, body: Option<&str>) -> Result<Recording> {
             source.guessed.extend((!chosen.name.is_empty()).then(|| format!("the robot is {}", chosen.name)));
             source.unused.extend(others.into_iter().map(|other| other.of(&file)));
         }
-        (recording.poses, recording.file) = (chosen.frames, file);
+        (recording.poses, recording.file) = (chosen.frames.into_iter().flatten().collect(), file);
     }
     if !recording.is_tracked() {
         recording.has_one_clock |= !recording.own_motion.is_on_clock_of_poses();
@@ -151,9 +151,9 @@ mod tests {
         let recording = read(&[("all.csv", text)]).expect("a recording").remove(0);
         assert_eq!(recording.commands.kind, Kind::Motors);
         assert_eq!(recording.commands.samples, [(0.0, [100.0, -100.0]), (20.0, [50.0, 50.0])]);
-        let frame = recording.poses[0].expect("seen");
+        let frame = recording.poses[0];
         assert_eq!((frame.pose.position_cm.x, frame.pose.heading_rad), (50.0, std::f64::consts::PI));
-        assert_eq!(recording.poses.len(), 2);
+        assert_eq!(recording.poses.len(), 1);
         assert_eq!(recording.readings[0].samples, [(0.0, Some(73.0)), (20.0, None)]);
         assert!(recording.has_one_clock);
     }
@@ -164,7 +164,7 @@ mod tests {
         let track = "t;x_cm;y_cm;yaw_deg\n1717243200,0;1;2;90\n1717243200,1;1;3;90\n";
         let recording = read(&[("c.csv", command), ("p.csv", track)]).expect("a recording").remove(0);
         assert_eq!((recording.commands.kind, recording.commands.samples[1].1), (Kind::Twist, [20.0, 1.0]));
-        let frame = recording.poses[1].expect("seen");
+        let frame = recording.poses[1];
         assert!((frame.t_ms - 1_717_243_200_100.0).abs() < 1e-3 && frame.pose.position_cm.y == 3.0, "{frame:?}");
     }
 
@@ -226,7 +226,7 @@ mod tests {
                            0.5,0.1,0.2,,,,,,,,\n0.51,,,0.3,0,0,1,9,9,17,1\n0.6,0.1,0.2,,,,,,,,\n";
         let found = read(&[("p.csv", plotjuggler)]).expect("one drive").remove(0);
         assert_eq!(found.commands.samples, [(500.0, [10.0, 0.2]), (600.0, [10.0, 0.2])]);
-        assert_eq!(found.poses.iter().flatten().map(|frame| frame.pose.position_cm.x).collect::<Vec<_>>(), [30.0]);
+        assert_eq!(found.poses.iter().map(|frame| frame.pose.position_cm.x).collect::<Vec<_>>(), [30.0]);
         let unused: Vec<&str> = found.sources[0].unused.iter().map(|unused| unused.name.as_str()).collect();
         assert!(unused.contains(&"/imu/orientation/x") && unused.contains(&"/odom/twist/twist/linear/x"), "{unused:?}");
     }

@@ -1,6 +1,8 @@
 //! Finds one clock for commands and poses, or what the robot measured of its motion if there are none: the clock they share, or an
 //! alignment by their motion.
 
+use std::borrow::Cow;
+
 use crate::clocks::{Clocks, align, gains, lag};
 use crate::motion::CumulativeMotion;
 use crate::recording::Commands;
@@ -74,8 +76,6 @@ pub fn aligned(
 pub fn is_mirrored(prepared: &Prepared, robot: &Robot, is_one_clock: bool, offset_ms: Option<f64>) -> bool {
     let commanded = commanded(&prepared.commands, robot);
     let observed = prepared.track.motion();
-    let opposite: Vec<CumulativeMotion> =
-        observed.iter().map(|m| CumulativeMotion { by: [-m.by[0], m.by[1]], ..*m }).collect();
     let explained = |track: &[CumulativeMotion]| {
         let lag = lag(&commanded, &shifted(track, offset_ms.unwrap_or(0.0)), MAX_LAG_MS);
         lag.is_some_and(|(_, unexplained)| unexplained <= MAX_UNEXPLAINED)
@@ -84,12 +84,17 @@ pub fn is_mirrored(prepared: &Prepared, robot: &Robot, is_one_clock: bool, offse
     if explained(&observed) {
         return false;
     }
+    let opposite: Vec<CumulativeMotion> =
+        observed.iter().map(|m| CumulativeMotion { by: [-m.by[0], m.by[1]], ..*m }).collect();
     explained(&opposite) || !is_one_clock && offset_ms.is_none() && !aligned(&observed) && aligned(&opposite)
 }
 
 /// Returns motion on a clock that lags by `ms`.
-pub fn shifted(motion: &[CumulativeMotion], ms: f64) -> Vec<CumulativeMotion> {
-    motion.iter().map(|m| CumulativeMotion { t_ms: m.t_ms - ms, ..*m }).collect()
+pub fn shifted(motion: &[CumulativeMotion], ms: f64) -> Cow<'_, [CumulativeMotion]> {
+    if ms == 0.0 {
+        return Cow::Borrowed(motion);
+    }
+    Cow::Owned(motion.iter().map(|m| CumulativeMotion { t_ms: m.t_ms - ms, ..*m }).collect())
 }
 
 fn span(motion: &[CumulativeMotion]) -> String {

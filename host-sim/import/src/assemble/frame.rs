@@ -92,7 +92,7 @@ fn walls_fit(recordings: &[&mut Recording], robot: &Robot, scene: &Scene) -> Res
 }
 
 fn apply<'a>(recordings: impl Iterator<Item = &'a mut Recording>, change: &dyn Fn(&Pose) -> Pose) {
-    let frames = recordings.flat_map(|recording| &mut recording.poses).flatten();
+    let frames = recordings.flat_map(|recording| &mut recording.poses);
     frames.for_each(|frame| frame.pose = change(&frame.pose));
 }
 

@@ -34,7 +34,7 @@ const STILL_RAD: f64 = 0.09;
 const MAX_DURATION_MS: f64 = 3.6e8;
 
 /// A recording with motor commands and a track without jumps.
-pub struct Prepared {
+pub struct Prepared<'a> {
     /// File of the track.
     pub file: PathBuf,
     /// Motor commands.
@@ -42,37 +42,37 @@ pub struct Prepared {
     /// Number of commands that were saturated at the robot's full speed.
     pub saturated: usize,
     /// The robot's poses; by dead reckoning if nobody tracked it.
-    pub track: Track,
+    pub track: Track<'a>,
     /// What shows the motion, in words.
     pub shown_by: &'static str,
     /// Number of poses excluded as jumps.
     pub jumps: usize,
     /// Whether anybody tracked it.
     pub is_tracked: bool,
-    readings: Vec<Readings>,
-    own_motion: OwnMotion,
+    readings: &'a [Readings],
+    own_motion: &'a OwnMotion,
     /// The range sensors of the rows.
     pub sensors: Arc<Sensors>,
 }
 
-impl Prepared {
+impl<'a> Prepared<'a> {
     /// Prepares a recording.
     ///
     /// # Errors
     /// When many commands exceed the robot's speed, its times span more than any recording, or nothing shows its motion.
-    pub fn of(recording: &Recording, robot: &Robot) -> Result<Self> {
+    pub fn of(recording: &'a Recording, robot: &Robot) -> Result<Self> {
         let file = recording.file.clone();
         let (commands, saturated) = recording.commands.as_motor_commands(robot, &file)?;
         if commands.samples.len() < 2 {
             return Err(Error::in_file(&file, format!("has only {} command(s)", commands.samples.len())));
         }
         check_span(&file, commands.samples.iter().map(|(ms, _)| *ms))?;
-        check_span(&file, recording.poses.iter().flatten().map(|frame| frame.t_ms))?;
-        let (readings, own_motion) = (recording.readings.clone(), recording.own_motion.clone());
+        check_span(&file, recording.poses.iter().map(|frame| frame.t_ms))?;
+        let (readings, own_motion) = (recording.readings.as_slice(), &recording.own_motion);
         let is_tracked = recording.is_tracked();
         let (track, jumps) = match is_tracked {
             true => track(&file, &recording.poses, robot)?,
-            false => (reckoned(&file, &own_motion, robot)?, 0),
+            false => (reckoned(&file, own_motion, robot)?, 0),
         };
         let shown_by = match is_tracked {
             true => "poses",
@@ -196,7 +196,7 @@ fn check_span(file: &Path, mut times_ms: impl Iterator<Item = f64>) -> Result<()
 }
 
 /// Returns the track of a robot that nobody tracked.
-fn reckoned(file: &Path, own_motion: &OwnMotion, robot: &Robot) -> Result<Track> {
+fn reckoned(file: &Path, own_motion: &OwnMotion, robot: &Robot) -> Result<Track<'static>> {
     let frames = own_motion.dead_reckoned(robot);
     if frames.len() < 2 {
         return Err(Error::in_file(
@@ -208,22 +208,26 @@ fn reckoned(file: &Path, own_motion: &OwnMotion, robot: &Robot) -> Result<Track>
 }
 
 /// Returns the track of poses, interpolated for slow trackers, and the number of jumps.
-fn track(file: &Path, poses: &[Option<Frame>], robot: &Robot) -> Result<(Track, usize)> {
-    let seen: Vec<Frame> = poses.iter().flatten().copied().collect();
-    let usual_ms = spacing_ms(&seen);
-    let plain = Track::of(file, seen.into_iter().map(Some).collect(), robot)?;
-    let (report, frames) = (plain.report(), plain.frames());
+fn track<'a>(file: &Path, poses: &'a [Frame], robot: &Robot) -> Result<(Track<'a>, usize)> {
+    let usual_ms = spacing_ms(poses);
+    let plain = Track::seen(file, poses, robot)?;
+    let report = plain.report();
     // In a wrong unit nearly every frame is a jump: the scale check reports that.
     let has_wrong_unit = 2 * report.jumps > report.frames;
-    let kept: Vec<Frame> = if has_wrong_unit { poses.iter().flatten().copied().collect() } else { frames.to_vec() };
-    let jumps = if has_wrong_unit { 0 } else { report.jumps };
-    let mut dense: Vec<Frame> = Vec::with_capacity(kept.len());
-    for pair in kept.windows(2) {
+    let (kept, jumps) = if has_wrong_unit { (Track::without_check(file, poses), 0) } else { (plain, report.jumps) };
+    let parts = |pair: &[Frame]| {
         let ms = pair[1].t_ms - pair[0].t_ms;
-        let parts = if ms <= USUAL_GAP * usual_ms { (ms / DENSE_MS).ceil().max(1.0) } else { 1.0 };
+        if ms <= USUAL_GAP * usual_ms { (ms / DENSE_MS).ceil().max(1.0) } else { 1.0 }
+    };
+    let pairs = || kept.frames().windows(2).map(|pair| (pair, parts(pair)));
+    if pairs().all(|(_, parts)| parts == 1.0) {
+        return Ok((kept, jumps));
+    }
+    let mut dense: Vec<Frame> = Vec::with_capacity(kept.frames().len());
+    for (pair, parts) in pairs() {
         dense.extend((0..parts as usize).map(|part| between(&pair[0], &pair[1], part as f64 / parts)));
     }
-    dense.extend(kept.last());
+    dense.extend(kept.frames().last());
     Ok((Track::without_check(file, dense), jumps))
 }
 
