@@ -81,7 +81,7 @@ impl Batch {
         let Batch { complete, commands, poses, measurements, .. } = self;
         let mut measurements: Vec<_> = measurements.into_iter().map(Vec::into_iter).collect();
         let mut drives: Vec<Drive> = complete.into_iter().flat_map(|entry| combined(vec![entry])).collect();
-        let shared = poses.first().cloned().filter(|_| poses.len() < commands.len());
+        let shared = poses.first().filter(|_| poses.len() < commands.len()).cloned();
         let mut poses = poses.into_iter();
         for commands in commands {
             let poses = shared.clone().or_else(|| poses.next());
@@ -194,6 +194,10 @@ impl Batch {
 /// Combines the parts of files: the first of each, the second of each, and so on; a file in one part belongs to all.
 fn combined(files: Vec<Entry>) -> Vec<Drive> {
     let parts = files.iter().map(|entry| entry.parts.len()).max().unwrap_or(0);
+    // Most are in one part, and are large.
+    if parts == 1 {
+        return vec![files.into_iter().flat_map(|entry| entry.parts).collect()];
+    }
     let part = |entry: &Entry, part: usize| match entry.parts.as_slice() {
         [whole] => Some(whole.clone()),
         parts => parts.get(part).cloned(),

@@ -16,7 +16,7 @@ pub fn named(sensors: &[RangeSensor], text: &str) -> Option<usize> {
 /// Keeps the further range sensors that were heard in `all` recordings, since an empty column would be one of a sensor that hears
 /// nothing; `count` returns in how many the sensor of an index was. Returns the sensors that remain, and a line for each of the others.
 pub fn heard_in_all(sensors: &Sensors, all: usize, count: impl Fn(usize) -> usize) -> (Sensors, Vec<String>) {
-    let counted = || (1..).map(&count).zip(sensors.further());
+    let counted = || sensors.further().iter().zip(1..).map(|(sensor, index)| (count(index), sensor));
     let kept = counted().filter(|(count, _)| *count == all).map(|(_, sensor)| sensor.clone()).collect();
     let silent = counted().filter(|(count, _)| *count < all).map(|(count, RangeSensor { name, .. })| {
         let what =
