@@ -222,6 +222,7 @@ def main(drive, folder):
     write(folder / "tracker.mcap", CompressionType.ZSTD, [command, tracked, sonar], drive)
     wheels, gyro = ("/joint_states", "sensor_msgs/msg/JointState"), ("/imu", "sensor_msgs/msg/Imu")
     write(folder / "odometry.mcap", CompressionType.LZ4, [stamped, odom, laser, wheels, gyro], drive)
+    write(folder / "untracked.mcap", CompressionType.ZSTD, [command, sonar, wheels, gyro], drive)
     write(folder / "transforms.mcap", CompressionType.NONE, [command, transforms], drive)
     localised(folder / "localised.mcap", CompressionType.ZSTD, drive)
 

@@ -9,8 +9,8 @@ use crate::command::workspace;
 /// The package that writes bags.
 const PACKAGE: &str = "mcap-ros2-support==0.6.0";
 
-/// Writes `tracker.mcap`, `odometry.mcap`, `transforms.mcap` and `localised.mcap` of a drive into a folder. The drive is a CSV
-/// file with columns t_s, v_m_s, w_rad_s, x_m, y_m, qz, qw and range_m.
+/// Writes `tracker.mcap`, `odometry.mcap`, `transforms.mcap`, `localised.mcap` and `untracked.mcap` of a drive into a folder. The drive
+/// is a CSV file with columns t_s, v_m_s, w_rad_s, x_m, y_m, qz, qw and range_m.
 pub fn write(drive: &Path, folder: &Path) {
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/ros_bags.py");
     succeed(Command::new(&*PYTHON).arg(script).args([drive, folder]));

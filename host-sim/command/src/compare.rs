@@ -25,8 +25,8 @@ use mindgap_files as files;
 use mindgap_files::places::Places;
 use mindgap_foundations::error::{Error, Result};
 use mindgap_foundations::executor::Executor;
-use mindgap_learning::learn::train::{NETWORKS, TABLE_ONE, Trainer, train};
-use mindgap_logs::inspection::Inspection;
+use mindgap_learning::learn::train::{NETWORKS, OF_A_SENSOR, TABLE_ONE, Trainer, train_sensors};
+use mindgap_logs::heard::Heard;
 use mindgap_logs::{Logs, Robot, Scene};
 use mindgap_models::simulator::Simulator;
 use mindgap_pages::diagnosis::comparison::Comparison;
@@ -114,13 +114,15 @@ impl Run for Compare {
     fn run(&self, executor: &dyn Executor) -> Result<String> {
         let (known, real) = self.sides()?;
         let models = self.patch.models(&real.robot)?;
-        if let Some(what) = coverage::missing(&known, &real) {
+        let heard = self.usable(known.clone())?;
+        let usable = &heard[0].logs;
+        if let Some(what) = coverage::missing(usable, &real) {
             return Err(self.not_enough(&what, &real)?);
         }
-        let simulator = self.learned(executor, &known)?;
+        let simulator = self.learned(executor, &heard)?;
         let method = Method { seed: self.seed, ..Method::default() };
         let request = Request { simulator: Some(&simulator), controller: None, method, step_ms: None };
-        let pairs = pairs::pairs(&known, &real);
+        let pairs = pairs::pairs(usable, &real);
         let bar = progress::shares();
         let watch = |stage: Stage| progress::at(&bar, stage.share_before(), stage.words().into());
         let answered = request.of(real.clone(), watch);
@@ -162,23 +164,29 @@ impl Compare {
     /// Reads both sides; a side without robot.toml has the other's robot.
     fn sides(&self) -> Result<(Logs, Logs)> {
         let given = match &self.robot {
-            Some(path) => Some(Robot::read(path)?),
+            Some(path) => Some(Robot::read_all(path)?),
             None => sides::robot_of(&self.simulator)?
                 .map_or_else(|| sides::robot_of(&self.real), |robot| Ok(Some(robot)))?,
         };
         let scene = self.scene.as_deref().map_or(Ok(Scene::default()), Scene::read)?;
-        let known = sides::read(&self.simulator, given, &scene, warn)?;
-        let first = &self.simulator[0];
-        let report = |found| warn(format!("{}: {found}", first.display()));
-        let known = Inspection::new(known).into_usable(report).map_err(|error| error.or_in_file(first))?;
-        let real = sides::read(&self.real, given.or(Some(known.robot)), &scene, warn)?;
+        let known = sides::read(&self.simulator, given.clone(), &scene, warn)?;
+        let given = given.unwrap_or_else(|| (known.robot, known.sensors()));
+        let real = sides::read(&self.real, Some(given), &scene, warn)?;
         Ok((known, real))
     }
 
+    /// Returns the simulator's logs without their defects, as each of its range sensors heard them.
+    fn usable(&self, known: Logs) -> Result<Vec<Heard>> {
+        let first = &self.simulator[0];
+        let report = |found| warn(format!("{}: {found}", first.display()));
+        known.usable_by_sensor(report).map_err(|error| error.or_in_file(first))
+    }
+
     /// Learns the simulator's side.
-    fn learned(&self, executor: &dyn Executor, known: &Logs) -> Result<Simulator> {
-        let bar = progress::bar(NETWORKS.len() as u64);
-        let simulator = train(executor, known, &Trainer::Fast, &TABLE_ONE, self.seed, &|p| progress::training(&bar, p));
+    fn learned(&self, executor: &dyn Executor, heard: &[Heard]) -> Result<Simulator> {
+        let bar = progress::bar((NETWORKS.len() + OF_A_SENSOR * (heard.len() - 1)) as u64);
+        let watch = |p| progress::training(&bar, p);
+        let simulator = train_sensors(executor, heard, &Trainer::Fast, &TABLE_ONE, self.seed, &watch);
         bar.finish_and_clear();
         let simulator = simulator?;
         simulator.missing.iter().for_each(|missing| warn(missing.to_string()));

@@ -38,10 +38,10 @@ enum Way {
     Bag(recordings::Bag),
 }
 
-/// Merge a brick's logs with a camera's tracks.
+/// Merge a brick's logs with a camera's tracks, if there are any.
 #[derive(Args)]
 struct Brick {
-    /// Brick logs and camera tracks in any order; their kind is detected from the first line. Tracks are CSV with time,
+    /// Brick logs, and camera tracks if there are any, in any order; their kind is detected from the first line. Tracks are CSV with time,
     /// x, y and heading (time_s, x_m, y_m, yaw_rad and the like), TUM, or exports of Motive, Vicon or Qualisys.
     #[arg(value_name = "BRICK_LOG|CAMERA_TRACK", required = true)]
     files: Vec<PathBuf>,
@@ -112,12 +112,11 @@ impl Run for Brick {
     fn run(&self, _: &dyn Executor) -> Result<String> {
         let units = Units { time: self.time_unit, length: self.length_unit, angle: self.angle_unit };
         let stated = Statements { units, body: self.body.clone(), ..Statements::default() };
-        let ((robot, sensors), scene) = (Robot::read_all(&self.robot)?, Scene::read(&self.scene)?);
+        let (robot, scene) = (Robot::read_all(&self.robot)?, Scene::read(&self.scene)?);
         let bar = progress::bar(self.files.len() as u64);
         let imported = import(&self.files, &stated, robot, scene, warn, progress::counting(&bar));
         bar.finish_and_clear();
         let (logs, report) = imported?;
-        let logs = logs.of_first(sensors, warn);
         logs.write(&self.out)?;
         let text = format!("{}{}: {}\n", describe(&report), self.out.display(), count(logs.runs.len(), "run"));
         let results = ImportResults { schema: SchemaNumber, report: &report };
@@ -155,21 +154,23 @@ fn describe(report: &Report) -> String {
         }
     }
     text += &recordings::excluded(&report.left_out);
-    text
+    text + &report.untracked.as_ref().map_or(String::new(), |what| format!("poses: {what}\n"))
 }
 
 fn row(log: &LogReport, run: &RunReport) -> [String; 7] {
-    let RunReport { name, body, offset_ms, drift, unexplained, rows, outside, in_gaps, .. } = run;
-    let without = match (outside, in_gaps) {
-        (0, 0) => "0".into(),
+    let RunReport { name, track, body, offset_ms, drift, unexplained, rows, outside, in_gaps, .. } = run;
+    let without = match (track, outside, in_gaps) {
+        (None, ..) => "all".into(),
+        (_, 0, 0) => "0".into(),
         _ => format!("{outside} outside the track, {in_gaps} in gaps"),
     };
+    let number = |value: Option<f64>, decimals: usize| value.map_or("-".into(), |value| format!("{value:.decimals$}"));
     [
         log.file.display().to_string(),
         body.as_ref().map_or_else(|| name.clone(), |body| format!("{name} ({body})")),
-        format!("{offset_ms:.0}"),
-        format!("{:.0}", 1e6 * drift),
-        format!("{:.1}", 100.0 * unexplained),
+        number(*offset_ms, 0),
+        number(drift.map(|drift| 1e6 * drift), 0),
+        number(unexplained.map(|share| 100.0 * share), 1),
         rows.to_string(),
         without,
     ]

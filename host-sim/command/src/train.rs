@@ -17,7 +17,7 @@ use mindgap_foundations::error;
 use mindgap_foundations::executor::Executor;
 use mindgap_foundations::schema_number::SchemaNumber;
 use mindgap_learning::learn::genome::Shape;
-use mindgap_learning::learn::train::{NETWORKS, TABLE_ONE};
+use mindgap_learning::learn::train::{NETWORKS, OF_A_SENSOR, TABLE_ONE};
 use mindgap_learning::learn::{paper, train};
 use mindgap_models::simulator::Missing;
 
@@ -53,9 +53,6 @@ fn hidden_layer(text: &str) -> Result<(String, Shape), String> {
     let shape = hidden.parse().ok().and_then(Shape::checked_halves);
     Ok((network.into(), shape.ok_or("N must be even, from 2 to 64")?))
 }
-
-/// Number of networks of a further range sensor.
-const OF_A_SENSOR: usize = 2;
 
 /// The trainers.
 #[derive(Clone, Copy, ValueEnum)]

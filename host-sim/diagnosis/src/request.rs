@@ -127,7 +127,7 @@ impl<'a> Request<'a> {
 fn textbook_of(logs: &Logs, noise: [f64; 3]) -> Result<Simulator> {
     let of = |logs: &Logs| textbook::simulator(&kinematic::baseline(logs), noise.into());
     let mut all = Simulator { sensor: logs.sensors().first_table().map(str::to_owned), ..of(logs)? };
-    for heard in logs.by_sensor().into_iter().skip(1) {
+    for heard in logs.by_further_sensor() {
         all = all.with_sensor_of(&heard.sensor, of(&heard.logs)?);
     }
     Ok(all)

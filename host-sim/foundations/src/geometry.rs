@@ -61,6 +61,13 @@ impl Pose {
         Pose { position_cm, heading_rad: wrap_rad(other.heading_rad - self.heading_rad) }
     }
 
+    /// Returns the pose after `share` of the way to another: 0 is this one, 1 the other. The heading turns the shorter way.
+    pub fn between(&self, other: &Pose, share: f64) -> Pose {
+        let at_cm = self.position_cm.lerp(other.position_cm, share);
+        let turn_rad = wrap_rad(other.heading_rad - self.heading_rad);
+        Pose::new(at_cm.x, at_cm.y, self.heading_rad + share * turn_rad)
+    }
+
     /// Returns the world pose of `relative`, given in this pose's frame: the inverse of [`Pose::relative`].
     pub fn compose(&self, relative: &Pose) -> Pose {
         Pose {
@@ -203,6 +210,14 @@ mod tests {
         let wall = Wall { from_cm: DVec2::new(0.0, 10.0), to_cm: DVec2::new(10.0, 10.0) };
         assert_eq!(cast(&[wall], DVec2::new(5.0, 0.0), DVec2::NEG_Y), None);
         assert_eq!(cast(&[wall], DVec2::new(5.0, 0.0), DVec2::X), None);
+    }
+
+    #[test]
+    fn between_two_poses_the_heading_turns_the_shorter_way() {
+        let [from, to] = [Pose::new(10.0, 20.0, 3.1), Pose::new(14.0, 20.0, -3.1)];
+        let halfway = from.between(&to, 0.5);
+        assert!(halfway.position_cm == DVec2::new(12.0, 20.0) && halfway.heading_rad.abs() > 3.12, "{halfway:?}");
+        assert_eq!((from.between(&to, 0.0), from.between(&to, 1.0).position_cm), (from, to.position_cm));
     }
 
     #[test]

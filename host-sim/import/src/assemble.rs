@@ -17,7 +17,7 @@ use super::clocks::Clocks;
 use super::draft::{Measure, RobotDraft};
 use super::left_out::LeftOut;
 use super::recording::{Kind, Recording};
-use super::report::{RecordingReport, RecordingsReport, SensorReport};
+use super::report::{RecordingReport, RecordingsReport, SensorReport, without_poses};
 use super::rotation;
 use super::scale_check::ScaleCheck;
 use mindgap_foundations::counter::Counter;
@@ -64,7 +64,7 @@ pub fn assemble(
 ) -> Result<Assembled> {
     recordings.iter_mut().for_each(Recording::correct_signs);
     let (robot, sensors) = robot.unzip();
-    let (sensors, silent) = sensors::heard(&mut recordings, sensors.unwrap_or_default());
+    let (sensors, silent) = sensors::heard(&mut recordings, &sensors.unwrap_or_default());
     let counter = Counter::new(
         recordings.len() * if robot.is_none() && !all_of(&recordings, Kind::Twist) { 2 } else { 1 },
         watch,
@@ -98,7 +98,7 @@ pub fn assemble(
                 reports.push(report);
             }
             Err(e) => {
-                left_out.push(LeftOut::failed(&recording.track, &e));
+                left_out.push(LeftOut::failed(&recording.file, &e));
                 error = error.or(Some(e));
             }
         }
@@ -112,13 +112,14 @@ pub fn assemble(
     let inspected = Inspection::new(logs.clone());
     let mismatch = scale_check.refusal("the commands", "the track");
     if let Some(why) = mismatch.or_else(|| inspected.withheld(Part::Motion).map(str::to_owned)) {
-        return Err(Error::in_file(&recordings[0].track, why));
+        return Err(Error::in_file(&recordings[0].file, why));
     }
     let of_further = further_findings(&logs, &inspected.findings);
     let findings = inspected.findings.iter().chain(&of_further).map(Finding::line).chain(silent).collect();
     let unused = recordings.iter().flat_map(|r| &r.sources).flat_map(|source| &source.unused).cloned();
     left_out.extend(unused);
     let report = RecordingsReport {
+        untracked: untracked(&reports),
         recordings: reports,
         odometry_check: scale_check,
         frame,
@@ -133,7 +134,7 @@ pub fn assemble(
 fn first_guess(recordings: &[Recording]) -> Result<RobotDraft> {
     let mut draft = RobotDraft::blank();
     draft.has_sensor = Some(recordings.iter().any(|recording| !recording.readings.is_empty()));
-    let spacing_ms = recordings.iter().map(|r| spacing_ms(&r.poses.iter().flatten().copied().collect::<Vec<_>>()));
+    let spacing_ms = recordings.iter().map(|recording| spacing_ms(&recording.poses));
     let spacing_ms = spacing_ms.fold(0.0, f64::max);
     if spacing_ms > draft.step_ms.value {
         draft.step_ms.value = 100.0 * (spacing_ms / 100.0).ceil();
@@ -165,7 +166,7 @@ fn fitted(recordings: &[Recording], stated: Stated, counter: &Counter<impl Fn(us
         let fit = |value: f64, what: &str| {
             if !PLAUSIBLE_CM.contains(&value) {
                 let why = format!("{what} would have to be {value:.3} to explain the track: its unit seems wrong");
-                return Err(Error::in_file(&recordings[0].track, why));
+                return Err(Error::in_file(&recordings[0].file, why));
             }
             Ok(Measure::placeholder(value, "fitted to these logs, so an error in it cannot show: measure it"))
         };
@@ -205,7 +206,7 @@ fn runs_of(
     first: usize,
 ) -> Result<(Vec<Run>, RecordingReport)> {
     if let Some(what) = rotation::missing(recording, robot) {
-        return Err(Error::in_file(&recording.track, what));
+        return Err(Error::in_file(&recording.file, what));
     }
     let mut prepared = Prepared::of(recording, robot)?;
     prepared.check_motion()?;
@@ -214,7 +215,7 @@ fn runs_of(
     prepared.sensors = Arc::clone(sensors);
     let runs = prepared.runs(&clocks, robot, first);
     if runs.is_empty() {
-        let what = "has no period with both poses and commands that lasts a few steps";
+        let what = format!("has no period with both {} and commands that lasts a few steps", prepared.shown_by);
         return Err(Error::in_file(&prepared.file, what));
     }
     let rows = || runs.iter().flat_map(|run| &run.rows);
@@ -240,6 +241,15 @@ fn runs_of(
     Ok((runs, report))
 }
 
+/// Returns what a diagnosis can do with the recordings that have no poses, if there are any.
+fn untracked(reports: &[RecordingReport]) -> Option<String> {
+    let untracked: Vec<&RecordingReport> = reports.iter().filter(|report| report.is_untracked()).collect();
+    let [counters, gyro] =
+        [|report: &RecordingReport| report.with_counters, |report: &RecordingReport| report.with_gyro]
+            .map(|rows| untracked.iter().any(|report| rows(report) > 0));
+    without_poses([untracked.len(), reports.len()], counters, gyro)
+}
+
 /// Counts the readings of a further range sensor.
 fn with_reading(runs: &[Run], index: usize, sensor: &RangeSensor) -> SensorReport {
     let readings = runs.iter().flat_map(|run| (0..run.rows.len()).filter_map(move |k| run.rows.further_cm(index, k)));
@@ -252,7 +262,7 @@ fn further_findings(logs: &Logs, known: &[Finding]) -> Vec<Finding> {
         let found = Inspection::new(heard.logs).findings.into_iter();
         found.filter(|found| !known.contains(found)).map(move |found| found.of_sensor(&heard.sensor))
     };
-    logs.by_sensor().into_iter().skip(1).flat_map(of_sensor).collect()
+    logs.by_further_sensor().into_iter().flat_map(of_sensor).collect()
 }
 
 #[cfg(test)]

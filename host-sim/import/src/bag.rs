@@ -211,15 +211,20 @@ impl Bag {
         }
         let clock = OneClock::of(&self.streams, &topics);
         let (commands, mut source_of_commands) = self.read_stream(&topics.commands, "commands", &clock)?;
-        let (poses, mut source_of_poses) = self.read_stream(&topics.poses, "poses", &clock)?;
-        let (poses, converted) = on_floor(poses);
         let (commands, sideways) = twists(commands);
         let number = commands.samples.len();
         source_of_commands.unused.extend(sideways.map(|reason| LeftOut::topic(&topics.commands, number, reason)));
         source_of_commands.unused.extend(self.left_out(&topics));
         source_of_commands.guessed.extend(topics.guessed.iter().chain(&clock.notes).cloned());
-        source_of_poses.guessed.extend(converted);
-        let mut sources = vec![source_of_commands, source_of_poses];
+        let mut sources = vec![source_of_commands];
+        let mut poses = Vec::new();
+        if let Some(name) = &topics.poses {
+            let (samples, mut source) = self.read_stream(name, "poses", &clock)?;
+            let (frames, converted) = on_floor(samples);
+            source.guessed.extend(converted);
+            sources.push(source);
+            poses = frames;
+        }
         let own_motion = self.own_motion(&topics.own_motion, &clock, &mut sources);
         let mut readings = Vec::new();
         for (index, name) in &topics.ranges {
@@ -234,7 +239,7 @@ impl Bag {
             sources.push(source);
             readings.push(Readings { sensor: *index, samples, on_clock_of_poses: false });
         }
-        Ok(Recording { commands, poses, track: self.path, readings, own_motion, has_one_clock: true, sources })
+        Ok(Recording { commands, poses, file: self.path, readings, own_motion, has_one_clock: true, sources })
     }
 
     /// Returns the samples of a stream on the clock of the bag, and what the report says of it.
@@ -369,11 +374,11 @@ fn is_of(name: &str, topic: &str) -> bool {
 }
 
 /// Projects poses onto the floor, and says how if z does not point up.
-fn on_floor(poses: Vec<(f64, Decoded)>) -> (Vec<Option<Frame>>, Option<String>) {
+fn on_floor(poses: Vec<(f64, Decoded)>) -> (Vec<Frame>, Option<String>) {
     let seen =
         poses.iter().filter_map(|(_, value)| if let Decoded::Pose(Some(pose)) = value { Some(pose) } else { None });
     let vertical = Axis::of_movement(seen);
-    let frames = poses.iter().map(|(t_ms, value)| match value {
+    let frames = poses.iter().filter_map(|(t_ms, value)| match value {
         Decoded::Pose(pose) => pose.map(|pose| vertical.frame(*t_ms, &pose)),
         _ => None,
     });

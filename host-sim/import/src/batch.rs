@@ -73,7 +73,7 @@ impl Batch {
         self.hold_places_of_failed();
         let Batch { complete, commands, poses, measurements, .. } = &self;
         let has_shared_track = poses.len() == 1 && commands.len() > 1;
-        let is_matched = (commands.len() == poses.len() || has_shared_track)
+        let is_matched = (commands.len() == poses.len() || has_shared_track || self.measure_themselves())
             && measurements.iter().all(|files| files.len() == commands.len());
         if !is_matched || (complete.is_empty() && commands.is_empty()) {
             return Err(self.mismatch());
@@ -81,7 +81,7 @@ impl Batch {
         let Batch { complete, commands, poses, measurements, .. } = self;
         let mut measurements: Vec<_> = measurements.into_iter().map(Vec::into_iter).collect();
         let mut drives: Vec<Drive> = complete.into_iter().flat_map(|entry| combined(vec![entry])).collect();
-        let shared = poses.first().cloned().filter(|_| poses.len() < commands.len());
+        let shared = poses.first().filter(|_| poses.len() < commands.len()).cloned();
         let mut poses = poses.into_iter();
         for commands in commands {
             let poses = shared.clone().or_else(|| poses.next());
@@ -100,6 +100,13 @@ impl Batch {
             }
         }
         Ok(drives)
+    }
+
+    /// Returns whether there are no poses, and every drive shows its motion by what the robot measured of it.
+    fn measure_themselves(&self) -> bool {
+        let shows_motion = |entry: &Entry| entry.parts.first().is_some_and(FileStreams::shows_motion);
+        let is_measured_beside = self.measurements.iter().any(|files| files.first().is_some_and(shows_motion));
+        self.poses.is_empty() && (is_measured_beside || self.commands.iter().all(shows_motion))
     }
 
     /// Takes the commands from files with commands alone, where there is one for each file that has speeds next to its poses.
@@ -121,6 +128,10 @@ impl Batch {
 
     /// Puts empty entries for the files that cannot be read, so that the others keep their partners.
     fn hold_places_of_failed(&mut self) {
+        // Most are drives by themselves.
+        if self.commands.len() > self.failed.len() && self.measure_themselves() {
+            return;
+        }
         // Where all others have a partner, a single one held measurements alone.
         if self.commands.len() == self.poses.len() && (!self.complete.is_empty() || self.failed.len() < 2) {
             return;
@@ -169,8 +180,9 @@ impl Batch {
             .collect();
         let hint = if hints.is_empty() { String::new() } else { format!("; unused columns: {}", hints.join("; ")) };
         Error::new(format!(
-            "{} file(s) contain commands and poses, {} only commands, {} only poses, {} only readings, counters or a gyro: give one of each per drive, \
-             in the same order{hint}",
+            "{} file(s) contain commands and poses, {} only commands, {} only poses, {} only readings, rotation counters or a gyro: a \
+             drive needs commands, and poses or else rotation counters or a gyro; give one file of each per drive, in the same \
+             order{hint}",
             complete.len(),
             commands.len(),
             poses.len(),
@@ -182,6 +194,10 @@ impl Batch {
 /// Combines the parts of files: the first of each, the second of each, and so on; a file in one part belongs to all.
 fn combined(files: Vec<Entry>) -> Vec<Drive> {
     let parts = files.iter().map(|entry| entry.parts.len()).max().unwrap_or(0);
+    // Most are in one part, and are large.
+    if parts == 1 {
+        return vec![files.into_iter().flat_map(|entry| entry.parts).collect()];
+    }
     let part = |entry: &Entry, part: usize| match entry.parts.as_slice() {
         [whole] => Some(whole.clone()),
         parts => parts.get(part).cloned(),

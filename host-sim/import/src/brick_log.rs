@@ -1,10 +1,11 @@
 //! Reads brick logs: runs without poses.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
-use super::table::read_source;
 use mindgap_foundations::error::{Error, Result};
 use mindgap_logs::Run;
+use mindgap_logs::range_sensor::{ECHO, Sensors, column_of};
 
 /// A brick log.
 #[derive(Clone, Debug, PartialEq)]
@@ -13,6 +14,8 @@ pub struct BrickLog {
     pub file: PathBuf,
     /// The rows, without poses.
     pub run: Run,
+    /// Whether each range sensor has a column.
+    pub have_echoes: Vec<bool>,
     /// Whether the last line was incomplete and dropped, because power or flash memory ran out.
     pub is_truncated: bool,
 }
@@ -20,12 +23,9 @@ pub struct BrickLog {
 /// Required columns; the rotation counters are needed to align the clock.
 const REQUIRED: [&str; 5] = ["t_ms", "left", "right", "rot_left_deg", "rot_right_deg"];
 
-/// Returns whether a file is a brick log, judging by its header.
-///
-/// # Errors
-/// When it cannot be read.
-pub fn is_brick_log(file: &Path) -> Result<bool> {
-    Ok(header_line(&read_source(file)?).is_some())
+/// Returns whether a text is a brick log, judging by its header.
+pub fn is_brick_log(text: &str) -> bool {
+    header_line(text).is_some()
 }
 
 /// Returns the number of the header's line, from 0. A hub without files prints its log, so other output may surround it.
@@ -38,12 +38,12 @@ fn header_line(text: &str) -> Option<usize> {
 }
 
 impl BrickLog {
-    /// Reads a log; a last line without a line end is dropped, and so is an incomplete row at the end of a printed log.
+    /// Parses the text of a log of a robot with these range sensors; a last line without a line end is dropped, and so is an incomplete
+    /// row at the end of a printed log. The file is for messages.
     ///
     /// # Errors
     /// When a column is missing, fewer than two rows are complete, or a number is invalid.
-    pub fn read(file: &Path, warn: impl FnMut(String)) -> Result<Self> {
-        let text = read_source(file)?;
+    pub fn parse(file: &Path, text: &str, sensors: &Arc<Sensors>, warn: impl FnMut(String)) -> Result<Self> {
         let complete = text.rfind('\n').map_or("", |end| &text[..=end]);
         let first = header_line(complete).unwrap_or_default();
         let lines: Vec<&str> = complete.lines().collect();
@@ -63,26 +63,53 @@ impl BrickLog {
         // Empty lines in place of those before the header keep the numbers of lines in messages.
         let log: Vec<&str> =
             lines.iter().take(last + 1).enumerate().map(|(at, line)| if at < first { "" } else { *line }).collect();
-        let run = Run::parse(file, &log.join("\n"), &REQUIRED, warn)?;
+        let named = as_named(header, sensors);
+        let (mut run, have_echoes) = Run::parse_of(file, &log.join("\n"), &REQUIRED, &named, warn)?;
+        run.rows = run.rows.of_sensors(Arc::clone(sensors));
         let is_truncated = is_cut || complete.len() < text.len();
-        Ok(BrickLog { file: file.to_owned(), run, is_truncated })
+        Ok(BrickLog { file: file.to_owned(), run, have_echoes, is_truncated })
     }
+}
+
+/// Returns the sensors under the names that the header uses: programs that collect logs write the first one's readings as `echo_cm`,
+/// whatever its name.
+fn as_named(header: &str, sensors: &Arc<Sensors>) -> Arc<Sensors> {
+    let has = |column: &str| header.split(',').any(|cell| cell.trim() == column);
+    if has(&column_of(sensors.first())) || !has(ECHO) {
+        return Arc::clone(sensors);
+    }
+    Arc::new(Sensors::new(None, sensors.further().to_vec()))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use mindgap_files as files;
+    use mindgap_logs::Ultrasonic;
+    use mindgap_logs::range_sensor::RangeSensor;
 
     const ROWS: &str = "t_ms,left,right,rot_left_deg,rot_right_deg,battery_mv,echo_cm\r\n0,30,30,0,0,8000,\r\n\
                         400,30,30,120,118,8000,87\r\n800,30,30,241,240,8000,8";
 
     fn read(text: &str) -> Result<BrickLog> {
-        let folder = tempfile::tempdir().expect("a folder");
-        let file = folder.path().join("run-000.csv");
-        files::write(&file, text)?;
-        assert!(is_brick_log(&file)?);
-        BrickLog::read(&file, |warning| panic!("{warning}"))
+        assert!(is_brick_log(text));
+        BrickLog::parse(Path::new("run-000.csv"), text, &Arc::default(), |warning| panic!("{warning}"))
+    }
+
+    #[test]
+    fn every_range_sensor_has_its_readings_and_the_first_any_name() {
+        let mount = Ultrasonic { x_cm: 0.0, y_cm: 0.0, yaw_deg: 0.0, min_cm: 4.0, max_cm: 250.0 };
+        let further = ["left", "rear"].map(|name| RangeSensor::new(name.into(), mount)).to_vec();
+        let sensors = Arc::new(Sensors::new(Some("front".into()), further));
+        for first in ["echo_cm", "echo_front_cm"] {
+            let text = format!(
+                "t_ms,left,right,rot_left_deg,rot_right_deg,echo_rear_cm,{first}\n0,1,1,0,0,30,10\n400,1,1,9,9,,11\n"
+            );
+            let log = BrickLog::parse(Path::new("run-000.csv"), &text, &sensors, |warning| panic!("{warning}"));
+            let BrickLog { run, have_echoes, .. } = log.expect("a log");
+            assert_eq!((have_echoes, run.rows.sensors().first()), (vec![true, false, true], "front"));
+            assert_eq!([0, 1].map(|row| run.rows.at(row).echo_cm), [Some(10.0), Some(11.0)]);
+            assert_eq!([0, 1].map(|row| run.rows.further_cm(1, row)), [Some(30.0), None]);
+        }
     }
 
     #[test]

@@ -17,7 +17,7 @@ use super::upright::Axis;
 use mindgap_foundations::error::{Error, Result};
 use mindgap_logs::range_sensor::RangeSensor;
 
-pub use self::commands::CommandColumns;
+pub use self::commands::{CommandColumns, CommandKind};
 pub use self::times::{ReadTimes, TimeColumns};
 
 /// The recognised columns of a table.

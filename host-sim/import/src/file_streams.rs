@@ -1,16 +1,17 @@
 //! The streams in one file: commands, poses of bodies and readings, cut where the clock was reset at a repeated header.
 
+mod cells;
+
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use super::column::Column;
-use super::columns::{Columns, ReadTimes};
+use self::cells::{Cells, Numbers, Poses, Rows};
+use super::columns::{Columns, CommandKind};
 use super::frame::Frame;
 use super::layouts;
 use super::left_out::LeftOut;
 use super::recording::{Commands, Echoes};
 use super::report::Source;
-use super::spatial_pose::SpatialPose;
 use super::statements::Statements;
 use super::timestamps::in_order;
 use super::upright::Axis;
@@ -44,19 +45,14 @@ pub struct BodyTrack {
     pub frames: Vec<Option<Frame>>,
 }
 
-/// The cells of a file, row by row.
-#[derive(Default)]
-struct Cells {
-    lines: Vec<u64>,
-    /// The first rows below repeated headers.
-    starts: Vec<usize>,
-    commands: Vec<Option<[f64; 2]>>,
-    poses: Vec<Vec<Option<SpatialPose>>>,
-    readings: Vec<Vec<Option<f64>>>,
-    counters: [Vec<Vec<Option<f64>>>; 2],
-    gyro: Vec<Option<f64>>,
-    /// Sums of the absolute speeds ahead and to the left.
-    speeds: [f64; 2],
+/// The parts of a file: those of a recording that was restarted within it, or all of it.
+struct Parts {
+    /// The rows of each.
+    rows: Vec<Range<usize>>,
+    /// The times of all rows, ms.
+    ms: Vec<f64>,
+    /// Whether the time of a row is later than all before it in its part.
+    is_kept: Vec<bool>,
 }
 
 /// Commands beyond this are a wrong unit or column: cm/s, rad/s or percent.
@@ -69,6 +65,11 @@ impl FileStreams {
         (sensors, self.counters.each_ref().map(Vec::len), self.gyro.is_some())
     }
 
+    /// Returns whether it holds what the robot measured of its motion: the wheels of both sides, or a gyro.
+    pub fn shows_motion(&self) -> bool {
+        self.gyro.is_some() || self.counters.iter().all(|wheels| !wheels.is_empty())
+    }
+
     /// Reads a file; more than one if the recording was restarted within it.
     ///
     /// # Errors
@@ -79,128 +80,130 @@ impl FileStreams {
             (None, Some(columns)) => columns,
             (mapped, _) => Columns::find(&table, mapped, &stated.units, &stated.sensors)?,
         };
-        let mut cells = Cells {
-            poses: vec![Vec::new(); columns.bodies.len()],
-            readings: vec![Vec::new(); columns.ranges.len()],
-            counters: columns.counters.each_ref().map(|wheels| vec![Vec::new(); wheels.len()]),
-            ..Cells::default()
-        };
-        let mut times = ReadTimes::new(&table, &columns.times);
-        let mut part = 0;
-        let mut left_out = table.for_each(|line| {
-            let pair = columns.commands.as_ref().map(|commands| commands.pair(line)).transpose()?;
-            let poses = columns.bodies.iter().map(|body| body.pose(line)).collect::<Result<Vec<_>>>()?;
-            let sideways = columns.sideways.as_ref().map_or(Ok(None), |sideways| sideways.value(line))?;
-            let readings =
-                columns.ranges.iter().map(|(_, range)| range.reading_cm(line)).collect::<Result<Vec<_>>>()?;
-            let value = |column: &Column| column.value(line);
-            let angles = columns.counters.iter().flatten().map(value).collect::<Result<Vec<_>>>()?;
-            let rate = columns.gyro.as_ref().map(value).transpose()?;
-            times.push(line)?;
-            if line.part > part {
-                (part, cells.starts) = (line.part, [cells.starts.as_slice(), &[cells.lines.len()]].concat());
-            }
-            cells.lines.push(line.number);
-            if let (Some(Some([ahead, _])), Some(sideways)) = (pair, sideways) {
-                cells.speeds = [cells.speeds[0] + ahead.abs(), cells.speeds[1] + sideways.abs()];
-            }
-            cells.commands.extend(pair);
-            cells.poses.iter_mut().zip(poses).for_each(|(all, pose)| all.push(pose));
-            cells.readings.iter_mut().zip(readings).for_each(|(all, reading)| all.push(reading));
-            cells.counters.iter_mut().flatten().zip(angles).for_each(|(all, angle)| all.push(angle));
-            cells.gyro.extend(rate);
-            Ok(())
-        })?;
+        let mut cells = Cells::of(&table, &columns);
+        let mut left_out = table.for_each(|line| cells.push(line))?;
         if cells.lines.is_empty() {
             return Err(Error::in_file(file, "has a header but no rows"));
         }
-        let times = times.choose()?;
         left_out.extend(columns.sideways.as_ref().map(|sideways| {
-            let [ahead, left] = cells.speeds;
-            let percent = if left > 0.0 { 100.0 * left / (ahead + left) } else { 0.0 };
+            let percent = cells.percent_sideways();
             let reason = format!("motion to the side is not modelled; it is {percent:.0} % of the commanded travel");
             LeftOut::column(&sideways.name, reason)
         }));
+        let Cells { times, rows, lines, starts, .. } = cells;
+        let times = times.choose()?;
         left_out.extend(columns.left_out.iter().chain(&times.left_out).cloned());
-        let kind = columns.commands.as_ref().map(|c| c.kind(&table, cells.commands.iter().flatten())).transpose()?;
+        let pairs = Numbers::pairs(&rows.commands);
+        let kind = columns.commands.as_ref().map(|commands| commands.kind(&table, pairs)).transpose()?;
+        // The text of a long recording takes as much memory as its numbers.
+        drop(table);
+        let axes: Vec<Option<Axis>> = rows.poses.iter().map(Poses::axis).collect();
         let mut guessed = [columns.guessed.clone(), times.guessed].concat();
         guessed.extend(kind.as_ref().and_then(|kind| kind.guessed.clone()));
-        let axes: Vec<Option<Axis>> = columns
-            .bodies
-            .iter()
-            .zip(&cells.poses)
-            .map(|(body, poses)| {
-                if !body.is_spatial() {
-                    return Some(Axis::Z);
-                }
-                Axis::upright(poses.iter().flatten().copied())
-            })
-            .collect();
+        if let Some(axis) = axes.iter().flatten().find(|axis| **axis != Axis::Z) {
+            let what =
+                format!("the {} axis points upwards: the robot turns about it and keeps its height", axis.name());
+            guessed.push(what);
+        }
         let mapped = [vec![format!("time = {}", times.name)], columns.mapped()].concat();
-        let parts = parts(&cells.starts, &times.ms);
-        let read = parts.iter().enumerate().map(|(part, rows)| {
-            let ms = &times.ms[rows.clone()];
-            let kept = in_order(ms).map_err(|(at, what)| Error::at_line(file, cells.lines[rows.start + at], what))?;
-            let out_of_order = kept.iter().filter(|kept| !**kept).count();
-            if ms.len() - out_of_order < 2 {
-                return Err(Error::in_file(
-                    file,
-                    format!("has {} row(s) with distinct times", ms.len() - out_of_order),
-                ));
-            }
-            let rows =
-                || ms.iter().zip(&kept).zip(rows.clone()).filter(|((_, kept), _)| **kept).map(|((ms, _), i)| (i, *ms));
-            let commands = kind.as_ref().map(|kind| Commands {
-                kind: kind.kind,
-                samples: rows().filter_map(|(i, ms)| Some((ms, cells.commands[i]?.map(|v| v * kind.factor)))).collect(),
-            });
-            if let Some(commands) = &commands
-                && commands.samples.iter().any(|(_, pair)| pair.iter().any(|v| !v.is_finite() || v.abs() > MAX_COMMAND))
-            {
-                return Err(Error::in_file(file, "has a command that no robot could follow"));
-            }
-            let bodies = columns.bodies.iter().zip(&cells.poses).zip(&axes).map(|((body, poses), axis)| {
-                let axis = axis.or(axes.iter().flatten().next().copied()).unwrap_or(columns.upright);
-                let frames = rows().map(|(i, ms)| poses[i].map(|pose| axis.frame(ms, &pose))).collect();
-                BodyTrack { name: body.name.clone(), frames }
-            });
-            let bodies: Vec<BodyTrack> = bodies.collect();
-            let numbers = |cells: &Vec<Option<f64>>| rows().filter_map(|(i, ms)| Some((ms, cells[i]?))).collect();
-            let readings = columns.ranges.iter().zip(&cells.readings);
-            let readings =
-                readings.map(|((sensor, _), cells)| (*sensor, rows().map(|(i, ms)| (ms, cells[i])).collect()));
-            let readings = readings.collect();
-            let counters = cells.counters.each_ref().map(|wheels| wheels.iter().map(numbers).collect());
-            let gyro = columns.gyro.as_ref().map(|_| numbers(&cells.gyro));
-            let mut source = Source::of_file(file, &rows().map(|(_, ms)| ms).collect::<Vec<_>>())
-                .mapped(mapped.clone())
-                .guessed(guessed.clone())
-                .left_out(out_of_order, "with a time not later than the one before");
-            if let [body] = bodies.as_slice() {
-                source = source.left_out(body.frames.iter().filter(|frame| frame.is_none()).count(), "without a pose");
-            }
-            if let Some(axis) = axes.iter().flatten().find(|axis| **axis != Axis::Z) {
-                let what =
-                    format!("the {} axis points upwards: the robot turns about it and keeps its height", axis.name());
-                source.guessed.push(what);
-            }
-            if parts.len() > 1 {
-                source.guessed.push(format!("part {} of {}: the recording was restarted", part + 1, parts.len()));
-            }
-            if part == 0 {
-                source.unused = left_out.iter().cloned().map(|unused| unused.of(file)).collect();
-            }
-            Ok(FileStreams { file: file.into(), commands, bodies, readings, counters, gyro, source })
-        });
-        let read = read.collect::<Result<Vec<_>>>()?;
+        let parts = Parts::of(file, times.ms, &starts, &lines)?;
+        let mut read = parts.empty(file, &mapped, &guessed);
+        read[0].source.unused = left_out.into_iter().map(|unused| unused.of(file)).collect();
+        parts.fill(&mut read, rows, &columns, kind.as_ref(), &axes)?;
         Ok(read)
     }
 }
 
-/// Returns the rows of each part: a header within the rows begins a new one if the clock goes back there.
-fn parts(starts: &[usize], ms: &[f64]) -> Vec<Range<usize>> {
-    let is_reset = |start: &&usize| **start > 0 && ms[**start] <= ms[**start - 1];
-    let mut starts: Vec<usize> = [0].into_iter().chain(starts.iter().filter(is_reset).copied()).collect();
-    starts.push(ms.len());
-    starts.windows(2).map(|pair| pair[0]..pair[1]).collect()
+impl Parts {
+    /// Divides rows into parts: a header within the rows begins a new one if the clock goes back there.
+    ///
+    /// # Errors
+    /// When the clock goes back elsewhere, or a part has fewer than two times.
+    fn of(file: &Path, ms: Vec<f64>, starts: &[usize], lines: &[u32]) -> Result<Self> {
+        let is_reset = |start: &&usize| **start > 0 && ms[**start] <= ms[**start - 1];
+        let mut starts: Vec<usize> = [0].into_iter().chain(starts.iter().filter(is_reset).copied()).collect();
+        starts.push(ms.len());
+        let rows: Vec<Range<usize>> = starts.windows(2).map(|pair| pair[0]..pair[1]).collect();
+        let mut is_kept = Vec::with_capacity(ms.len());
+        for part in &rows {
+            let kept = in_order(&ms[part.clone()])
+                .map_err(|(at, what)| Error::at_line(file, lines[part.start + at].into(), what))?;
+            let distinct = kept.iter().filter(|kept| **kept).count();
+            if distinct < 2 {
+                return Err(Error::in_file(file, format!("has {distinct} row(s) with distinct times")));
+            }
+            is_kept.extend(kept);
+        }
+        Ok(Parts { rows, ms, is_kept })
+    }
+
+    /// Returns the rows of a part with their times, ms.
+    fn timed(&self, part: usize) -> impl Iterator<Item = (usize, f64)> {
+        self.rows[part].clone().filter(|row| self.is_kept[*row]).map(|row| (row, self.ms[row]))
+    }
+
+    /// Returns streams without samples for each part.
+    fn empty(&self, file: &Path, mapped: &[String], guessed: &[String]) -> Vec<FileStreams> {
+        let parts = self.rows.len();
+        let empty = |(part, rows): (usize, &Range<usize>)| {
+            let times_ms: Vec<f64> = self.timed(part).map(|(_, ms)| ms).collect();
+            let restarted = format!("part {} of {parts}: the recording was restarted", part + 1);
+            let source = Source::of_file(file, &times_ms)
+                .mapped(mapped.to_vec())
+                .guessed(guessed.iter().cloned().chain((parts > 1).then_some(restarted)))
+                .left_out(rows.len() - times_ms.len(), "with a time not later than the one before");
+            let (bodies, readings, counters) = (Vec::new(), Vec::new(), Default::default());
+            FileStreams { file: file.into(), commands: None, bodies, readings, counters, gyro: None, source }
+        };
+        self.rows.iter().enumerate().map(empty).collect()
+    }
+
+    /// Adds the samples. Columns are dropped one by one, since those of a long recording take much memory.
+    ///
+    /// # Errors
+    /// When no robot could follow a command.
+    fn fill(
+        &self,
+        read: &mut [FileStreams],
+        rows: Rows,
+        columns: &Columns,
+        kind: Option<&CommandKind>,
+        axes: &[Option<Axis>],
+    ) -> Result<()> {
+        let Rows { commands, poses, readings, counters, gyro } = rows;
+        for (part, streams) in read.iter_mut().enumerate() {
+            streams.commands = kind.map(|kind| kind.commands(self.timed(part), |row| Numbers::pair(&commands, row)));
+            let is_impossible = |number: &f64| !number.is_finite() || number.abs() > MAX_COMMAND;
+            let mut numbers = streams.commands.iter().flat_map(|of| of.samples.iter().flat_map(|(_, pair)| pair));
+            if numbers.any(is_impossible) {
+                return Err(Error::in_file(&streams.file, "has a command that no robot could follow"));
+            }
+        }
+        drop(commands);
+        for ((body, poses), axis) in columns.bodies.iter().zip(poses).zip(axes) {
+            let axis = axis.or(axes.iter().flatten().next().copied()).unwrap_or(columns.upright);
+            for (part, streams) in read.iter_mut().enumerate() {
+                let frame = |(row, t_ms)| poses.get(row, axis).map(|pose| Frame { t_ms, pose });
+                let frames: Vec<Option<Frame>> = self.timed(part).map(frame).collect();
+                if let [_] = columns.bodies.as_slice() {
+                    let lost = frames.iter().filter(|frame| frame.is_none()).count();
+                    streams.source = streams.source.clone().left_out(lost, "without a pose");
+                }
+                streams.bodies.push(BodyTrack { name: body.name.clone(), frames });
+            }
+        }
+        for ((sensor, _), readings) in columns.ranges.iter().zip(readings) {
+            for (part, streams) in read.iter_mut().enumerate() {
+                let samples = self.timed(part).map(|(row, ms)| (ms, readings.get(row))).collect();
+                streams.readings.push((*sensor, samples));
+            }
+        }
+        for (part, streams) in read.iter_mut().enumerate() {
+            let samples =
+                |numbers: &Numbers| self.timed(part).filter_map(|(row, ms)| Some((ms, numbers.get(row)?))).collect();
+            streams.counters = counters.each_ref().map(|wheels| wheels.iter().map(samples).collect());
+            streams.gyro = columns.gyro.as_ref().map(|_| samples(&gyro));
+        }
+        Ok(())
+    }
 }

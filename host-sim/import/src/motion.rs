@@ -37,7 +37,8 @@ pub fn by_wheels(rows: &Rows, robot: &Robot) -> Vec<CumulativeMotion> {
 pub fn by_camera(frames: &[Frame]) -> Vec<CumulativeMotion> {
     let mut by = [0.0; MOTIONS];
     let mut before: Option<&Frame> = None;
-    let moved = frames.iter().map(|frame| {
+    let mut near: Vec<CumulativeMotion> = Vec::with_capacity(NEIGHBOURS);
+    let averaged = frames.iter().filter_map(|frame| {
         if let Some(before) = before.replace(frame) {
             let change = before.pose.relative(&frame.pose);
             // Travel along the mean of both headings, which is the direction of an arc's chord.
@@ -45,10 +46,13 @@ pub fn by_camera(frames: &[Frame]) -> Vec<CumulativeMotion> {
             by[0] += change.heading_rad;
             by[1] += change.position_cm.x * cos + change.position_cm.y * sin;
         }
-        CumulativeMotion { t_ms: frame.t_ms, by }
+        if near.len() == NEIGHBOURS {
+            near.remove(0);
+        }
+        near.push(CumulativeMotion { t_ms: frame.t_ms, by });
+        (near.len() == NEIGHBOURS && frame.t_ms - near[0].t_ms <= GAP_MS).then(|| mean(&near))
     });
-    let moved: Vec<CumulativeMotion> = moved.collect();
-    moved.windows(NEIGHBOURS).filter(|near| near[NEIGHBOURS - 1].t_ms - near[0].t_ms <= GAP_MS).map(mean).collect()
+    averaged.collect()
 }
 
 fn mean(near: &[CumulativeMotion]) -> CumulativeMotion {

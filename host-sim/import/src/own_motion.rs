@@ -1,8 +1,11 @@
 //! What a robot measures of its own motion: rotation counters and a gyro.
 
-use super::frame::GAP_MS;
+use super::frame::{Frame, GAP_MS};
 use super::left_out::LeftOut;
+use super::scale_check::travel_and_rotation;
+use mindgap_foundations::geometry::Pose;
 use mindgap_foundations::statistics::summary::median;
+use mindgap_logs::Robot;
 
 /// Rotation counters and a gyro, as far as they were recorded.
 #[derive(Clone, Debug, Default)]
@@ -30,8 +33,49 @@ const MAX_RAD: f64 = 1e5;
 const MAX_RAD_S: f64 = 1e3;
 /// Numbers are interpolated up to this multiple of their usual interval.
 const USUAL_GAP: f64 = 2.5;
+/// Time between poses by dead reckoning, ms.
+const RECKONED_MS: f64 = 50.0;
 
 impl OwnMotion {
+    /// Returns whether the wheels of both sides were counted.
+    pub fn has_counters(&self) -> bool {
+        self.wheels.iter().all(|wheels| !wheels.is_empty())
+    }
+
+    /// Returns whether what shows the motion best is on the clock of the poses rather than that of the commands.
+    pub fn is_on_clock_of_poses(&self) -> bool {
+        self.best().is_some_and(|series| series.on_clock_of_poses)
+    }
+
+    /// Returns the poses of a robot by dead reckoning from its rotation counters; with a gyro alone it turns in its place.
+    pub fn dead_reckoned(&self, robot: &Robot) -> Vec<Frame> {
+        let ends = self.best().and_then(|best| best.samples.first().zip(best.samples.last()));
+        let Some(((first_ms, _), (last_ms, _))) = ends else { return Vec::new() };
+        let steps = ((last_ms - first_ms) / RECKONED_MS) as usize;
+        let (mut pose, mut before, mut turned_rad) = (Pose::new(0.0, 0.0, 0.0), None, 0.0);
+        let frame = |step| {
+            let t_ms = first_ms + RECKONED_MS * step as f64;
+            let moved = if self.has_counters() {
+                let [left_rad, right_rad] = [self.angle_rad(0, [t_ms; 2])?, self.angle_rad(1, [t_ms; 2])?];
+                let cm_per_rad = robot.wheel_diameter_cm / 2.0;
+                travel_and_rotation(left_rad * cm_per_rad, right_rad * cm_per_rad, robot)
+            } else {
+                turned_rad += self.yaw_rad_s([t_ms; 2])? * RECKONED_MS / 1e3;
+                [0.0, turned_rad]
+            };
+            let [cm, rad] = before.replace(moved).map_or([0.0; 2], |[cm, rad]| [moved[0] - cm, moved[1] - rad]);
+            let (sin, cos) = libm::sincos(rad / 2.0);
+            pose = pose.compose(&Pose::new(cm * cos, cm * sin, rad));
+            Some(Frame { t_ms, pose })
+        };
+        (0..=steps).filter_map(frame).collect()
+    }
+
+    /// Returns a wheel if the wheels were counted, or else the gyro.
+    fn best(&self) -> Option<&Series> {
+        if self.has_counters() { self.wheels[0].first() } else { self.gyro.as_ref() }
+    }
+
     /// Returns the angle of the wheels of a side, rad, at a time on the clocks of commands and poses: the mean of its wheels;
     /// `None` if one of them is unknown.
     pub fn angle_rad(&self, side: usize, times_ms: [f64; 2]) -> Option<f64> {
@@ -94,6 +138,7 @@ impl Series {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use mindgap_built_in_robot::default_robot;
 
     #[test]
     fn numbers_are_interpolated_but_not_across_gaps() {
@@ -102,6 +147,23 @@ mod tests {
         assert_eq!(dropped.and_then(|dropped| dropped.rows), Some(1));
         let at = [-1.0, 0.0, 50.0, 150.0, 200.0, 700.0, 1200.0, 1201.0].map(|ms| series.at(ms));
         assert_eq!(at, [None, Some(1.0), Some(1.5), Some(3.0), Some(4.0), None, Some(8.0), None]);
+    }
+
+    #[test]
+    fn dead_reckoning_follows_the_wheels_or_turns_with_the_gyro() {
+        let robot = Robot { wheel_diameter_cm: 10.0, track_cm: 20.0, ..default_robot() };
+        let turn_rad = std::f64::consts::FRAC_PI_2;
+        // A quarter of a circle of 30 cm about a point to the left.
+        let wheel = |cm: f64| vec![Series::of_wheel(vec![(0.0, 0.0), (1000.0, cm * turn_rad / 5.0)], false).0];
+        let gyro = Some(Series::of_gyro(vec![(0.0, turn_rad), (1000.0, turn_rad)], false).0);
+        let motion = OwnMotion { wheels: [wheel(20.0), wheel(40.0)], gyro };
+        let last = motion.dead_reckoned(&robot).pop().expect("frames");
+        assert!(last.t_ms == 1000.0 && (last.pose.heading_rad - turn_rad).abs() < 1e-9, "{last:?}");
+        assert!(last.pose.position_cm.distance(glam::DVec2::new(30.0, 30.0)) < 0.02, "{last:?}");
+        let turning = OwnMotion { wheels: [Vec::new(), wheel(40.0)], ..motion };
+        let last = turning.dead_reckoned(&robot).pop().expect("frames");
+        assert!((last.pose.heading_rad - turn_rad).abs() < 0.1 && last.pose.position_cm.length() == 0.0, "{last:?}");
+        assert!(OwnMotion::default().dead_reckoned(&robot).is_empty());
     }
 
     #[test]

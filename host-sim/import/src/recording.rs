@@ -14,15 +14,15 @@ use mindgap_logs::Robot;
 pub struct Recording {
     /// Commands to the robot.
     pub commands: Commands,
-    /// Tracked poses; `None` where the robot was lost.
-    pub poses: Vec<Option<Frame>>,
-    /// File of the poses.
-    pub track: PathBuf,
+    /// Poses where the robot was seen; none if nobody tracked it.
+    pub poses: Vec<Frame>,
+    /// File of the poses, or of the commands if there are none.
+    pub file: PathBuf,
     /// Readings of the range sensors that were heard, in the order of the sensors.
     pub readings: Vec<Readings>,
     /// What the robot measured of its own motion.
     pub own_motion: OwnMotion,
-    /// Whether all streams are known to share one clock.
+    /// Whether commands and poses, or what the robot measured of its motion if there are none, are known to share one clock.
     pub has_one_clock: bool,
     /// Sources, for the report.
     pub sources: Vec<Source>,
@@ -88,6 +88,11 @@ impl Kind {
 }
 
 impl Recording {
+    /// Returns whether any pose was tracked.
+    pub fn is_tracked(&self) -> bool {
+        !self.poses.is_empty()
+    }
+
     /// Corrects negative readings, and reports that.
     pub fn correct_signs(&mut self) {
         for readings in &mut self.readings {

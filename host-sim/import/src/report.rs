@@ -16,6 +16,8 @@ pub struct Report {
     pub tracks: Vec<TrackReport>,
     /// Brick logs.
     pub logs: Vec<LogReport>,
+    /// What can be diagnosed without poses, and how to add them; null if there is a track.
+    pub untracked: Option<String>,
     /// Everything that is not used, with the reason.
     pub left_out: Vec<LeftOut>,
 }
@@ -53,21 +55,21 @@ pub struct LogReport {
 pub struct RunReport {
     /// Name in the log folder.
     pub name: String,
-    /// File of the matching track.
-    pub track: PathBuf,
+    /// File of the matching track; null if no file is a track.
+    pub track: Option<PathBuf>,
     /// Body of the track; null if the file has a single one without a name.
     pub body: Option<String>,
-    /// Camera time at brick time 0, ms.
-    pub offset_ms: f64,
-    /// Relative drift of the camera's clock: 1e-4 is 0.1 ms per second faster than the brick's.
-    pub drift: f64,
-    /// Fraction of the motion's variance that the alignment leaves unexplained, 0..=1.
-    pub unexplained: f64,
+    /// Camera time at brick time 0, ms; null without a track.
+    pub offset_ms: Option<f64>,
+    /// Relative drift of the camera's clock: 1e-4 is 0.1 ms per second faster than the brick's; null without a track.
+    pub drift: Option<f64>,
+    /// Fraction of the motion's variance that the alignment leaves unexplained, 0..=1; null without a track.
+    pub unexplained: Option<f64>,
     /// Number of changes of command that the rotation counters place between two rows; the rows hold their mean commands.
     pub changes_within_rows: usize,
     /// Number of rows.
     pub rows: usize,
-    /// Number of rows without a pose because they are before or after the track.
+    /// Number of rows without a pose because they are before or after the track; all rows without a track.
     pub outside: usize,
     /// Number of rows without a pose because the camera had lost the robot.
     pub in_gaps: usize,
@@ -78,6 +80,8 @@ pub struct RunReport {
 pub struct RecordingsReport {
     /// The recordings.
     pub recordings: Vec<RecordingReport>,
+    /// What can be diagnosed of recordings without poses, and how to add poses; null if all have some.
+    pub untracked: Option<String>,
     /// Commanded against tracked motion.
     pub odometry_check: ScaleCheck,
     /// What was changed in the frame of the poses; null if nothing was.
@@ -153,7 +157,7 @@ pub enum Determined {
     Assumed,
 }
 
-/// Relation of the clocks of commands and poses.
+/// Relation of the clocks of commands and poses; without poses, of commands and what the robot measured of its motion.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct ClocksReport {
     /// Whether commands and poses share one clock.
@@ -192,6 +196,29 @@ pub struct Source {
     /// Columns, bodies and rows that are not used; part of the report's `left_out`.
     #[serde(skip)]
     pub unused: Vec<LeftOut>,
+}
+
+impl RecordingReport {
+    /// Returns whether no row has a pose.
+    pub fn is_untracked(&self) -> bool {
+        self.without_pose == self.rows
+    }
+}
+
+/// Says what a diagnosis can do without poses, by what the robot measured of its motion, and how to add them; `None` if no
+/// recording lacks them. The first number is that of recordings without poses, the second that of all.
+pub fn without_poses([without, all]: [usize; 2], has_counters: bool, has_gyro: bool) -> Option<String> {
+    let some = if without == all { String::new() } else { format!(" in {without} of {all} recordings") };
+    let counters = has_counters.then_some("rotation counters, which show the drive up to the wheels");
+    let gyro = has_gyro.then_some("a gyro, which shows how the body turns");
+    let shown: Vec<&str> = counters.into_iter().chain(gyro).collect();
+    let what = format!(
+        "no poses were found{some}: a diagnosis compares the commands with {}, and neither travel over the ground nor range \
+         sensors; to add poses, import them together with the commands, as a table of a camera or motion capture (t_s, x_m, y_m, \
+         yaw_rad) or in a bag (PoseStamped, tf or Odometry)",
+        shown.join(", and ")
+    );
+    (without > 0).then_some(what)
 }
 
 impl Source {

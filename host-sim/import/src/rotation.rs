@@ -12,7 +12,7 @@ const MIN_MOVED_CM: f64 = 20.0;
 
 /// Returns why a recording is refused, if its track has no rotation. Without this, its clocks would seem to differ.
 pub fn missing(recording: &Recording, robot: &Robot) -> Option<String> {
-    let poses = || recording.poses.iter().flatten().map(|frame| frame.pose);
+    let poses = || recording.poses.iter().map(|frame| frame.pose);
     let first = poses().next()?;
     // A rotation about another axis may look like half a turn.
     let is_constant = poses().all(|pose| libm::sin(pose.heading_rad - first.heading_rad).abs() < SAME_HEADING);

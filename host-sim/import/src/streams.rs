@@ -70,10 +70,11 @@ pub fn recordings(files: &[PathBuf], stated: &Statements, watch: impl Fn(usize, 
 
 /// Joins files with complementary streams into one recording.
 fn joined(files: Drive, body: Option<&str>) -> Result<Recording> {
+    let is_tracked = files.iter().any(|streams| !streams.bodies.is_empty());
     let mut recording = Recording {
         commands: Commands { kind: Kind::Motors, samples: Vec::new() },
         poses: Vec::new(),
-        track: PathBuf::new(),
+        file: PathBuf::new(),
         readings: Vec::new(),
         own_motion: OwnMotion::default(),
         has_one_clock: files.len() == 1,
@@ -81,8 +82,10 @@ fn joined(files: Drive, body: Option<&str>) -> Result<Recording> {
     };
     let mut bodies: Option<(PathBuf, Vec<BodyTrack>)> = None;
     for FileStreams { file, commands, bodies: of_file, readings, counters, gyro, mut source } in files {
-        // A separate file of what the robot measured was written by the robot, like its commands.
+        // A separate file of what the robot measured was written by the robot, like its commands. Without poses it stands in for
+        // them, and the motion shows whether its clock is that of the commands.
         let on_clock_of_poses = commands.is_none() && !of_file.is_empty();
+        let own_on_clock_of_poses = commands.is_none() && (!of_file.is_empty() || !is_tracked);
         for (sensor, samples) in readings {
             if recording.readings.iter().all(|readings| readings.sensor != sensor) {
                 recording.readings.push(Readings { sensor, samples, on_clock_of_poses });
@@ -91,17 +94,19 @@ fn joined(files: Drive, body: Option<&str>) -> Result<Recording> {
         let OwnMotion { wheels, gyro: known } = &mut recording.own_motion;
         for (wheels, of_file) in wheels.iter_mut().zip(counters).filter(|(wheels, _)| wheels.is_empty()) {
             for samples in of_file {
-                let (wheel, dropped) = Series::of_wheel(samples, on_clock_of_poses);
+                let (wheel, dropped) = Series::of_wheel(samples, own_on_clock_of_poses);
                 wheels.push(wheel);
                 source.unused.extend(dropped.map(|dropped| dropped.of(&file)));
             }
         }
         if let (None, Some(samples)) = (&known, gyro) {
-            let (gyro, dropped) = Series::of_gyro(samples, on_clock_of_poses);
+            let (gyro, dropped) = Series::of_gyro(samples, own_on_clock_of_poses);
             *known = Some(gyro);
             source.unused.extend(dropped.map(|dropped| dropped.of(&file)));
         }
-        recording.commands = commands.unwrap_or(recording.commands);
+        if let Some(commands) = commands {
+            (recording.commands, recording.file) = (commands, file.clone());
+        }
         if !of_file.is_empty() {
             bodies = Some((file, of_file));
         }
@@ -114,7 +119,10 @@ fn joined(files: Drive, body: Option<&str>) -> Result<Recording> {
             source.guessed.extend((!chosen.name.is_empty()).then(|| format!("the robot is {}", chosen.name)));
             source.unused.extend(others.into_iter().map(|other| other.of(&file)));
         }
-        (recording.poses, recording.track) = (chosen.frames, file);
+        (recording.poses, recording.file) = (chosen.frames.into_iter().flatten().collect(), file);
+    }
+    if !recording.is_tracked() {
+        recording.has_one_clock |= !recording.own_motion.is_on_clock_of_poses();
     }
     Ok(recording)
 }
@@ -143,9 +151,9 @@ mod tests {
         let recording = read(&[("all.csv", text)]).expect("a recording").remove(0);
         assert_eq!(recording.commands.kind, Kind::Motors);
         assert_eq!(recording.commands.samples, [(0.0, [100.0, -100.0]), (20.0, [50.0, 50.0])]);
-        let frame = recording.poses[0].expect("seen");
+        let frame = recording.poses[0];
         assert_eq!((frame.pose.position_cm.x, frame.pose.heading_rad), (50.0, std::f64::consts::PI));
-        assert_eq!(recording.poses.len(), 2);
+        assert_eq!(recording.poses.len(), 1);
         assert_eq!(recording.readings[0].samples, [(0.0, Some(73.0)), (20.0, None)]);
         assert!(recording.has_one_clock);
     }
@@ -156,7 +164,7 @@ mod tests {
         let track = "t;x_cm;y_cm;yaw_deg\n1717243200,0;1;2;90\n1717243200,1;1;3;90\n";
         let recording = read(&[("c.csv", command), ("p.csv", track)]).expect("a recording").remove(0);
         assert_eq!((recording.commands.kind, recording.commands.samples[1].1), (Kind::Twist, [20.0, 1.0]));
-        let frame = recording.poses[1].expect("seen");
+        let frame = recording.poses[1];
         assert!((frame.t_ms - 1_717_243_200_100.0).abs() < 1e-3 && frame.pose.position_cm.y == 3.0, "{frame:?}");
     }
 
@@ -176,7 +184,7 @@ mod tests {
             (
                 "a.csv",
                 track,
-                "0 file(s) contain commands and poses, 0 only commands, 2 only poses, 0 only readings, counters or a gyro",
+                "0 file(s) contain commands and poses, 0 only commands, 2 only poses, 0 only readings, rotation counters or a gyro",
             ),
             ("a.csv", "t_s,x_m,y_m,th_rad,u1,u2\n0,0,0,0,1,1\n1,0,0,0,1,1\n", "; unused columns: u1 of "),
         ] {
@@ -192,7 +200,7 @@ mod tests {
     fn a_bad_file_leaves_the_batch_with_its_partner() {
         let found = read_all(&[("c1.csv", "t_s\n"), ("c2.csv", COMMANDS), ("p1.csv", POSES), ("p2.csv", POSES)]);
         let Recordings { recordings, left_out } = found.expect("one drive");
-        assert!(recordings.len() == 1 && recordings[0].track.ends_with("p2.csv"), "{recordings:?}");
+        assert!(recordings.len() == 1 && recordings[0].file.ends_with("p2.csv"), "{recordings:?}");
         let lines: Vec<String> = left_out.iter().map(LeftOut::line).collect();
         assert!(
             lines[0].contains("c1.csv: line 1") && lines[1].contains("p1.csv: the other file of its drive"),
@@ -218,7 +226,7 @@ mod tests {
                            0.5,0.1,0.2,,,,,,,,\n0.51,,,0.3,0,0,1,9,9,17,1\n0.6,0.1,0.2,,,,,,,,\n";
         let found = read(&[("p.csv", plotjuggler)]).expect("one drive").remove(0);
         assert_eq!(found.commands.samples, [(500.0, [10.0, 0.2]), (600.0, [10.0, 0.2])]);
-        assert_eq!(found.poses.iter().flatten().map(|frame| frame.pose.position_cm.x).collect::<Vec<_>>(), [30.0]);
+        assert_eq!(found.poses.iter().map(|frame| frame.pose.position_cm.x).collect::<Vec<_>>(), [30.0]);
         let unused: Vec<&str> = found.sources[0].unused.iter().map(|unused| unused.name.as_str()).collect();
         assert!(unused.contains(&"/imu/orientation/x") && unused.contains(&"/odom/twist/twist/linear/x"), "{unused:?}");
     }

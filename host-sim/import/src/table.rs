@@ -188,6 +188,10 @@ impl Line<'_> {
     /// When the cell is anything else.
     pub fn number(&self, column: usize) -> Result<Option<f64>> {
         let text = self.text(column);
+        // Most cells are plain numbers.
+        if let Some(number) = text.parse().ok().filter(|number: &f64| !number.is_nan()) {
+            return Ok(Some(number));
+        }
         if cell::is_missing(text) {
             return Ok(None);
         }

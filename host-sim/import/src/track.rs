@@ -1,23 +1,24 @@
 //! Camera tracks: the robot's pose frame by frame, on the camera's own clock.
 
+use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
 use super::frame::{Frame, GAP_MS};
 use super::motion::{CumulativeMotion, by_camera};
 use super::report::TrackReport;
 use mindgap_foundations::error::{Error, Result};
-use mindgap_foundations::geometry::{Pose, wrap_rad};
+use mindgap_foundations::geometry::Pose;
 use mindgap_logs::Robot;
 
 /// A camera track.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Track {
+pub struct Track<'a> {
     /// File of the track.
     pub file: PathBuf,
     /// Body of a motion capture; `None` if the file has a single one without a name.
     pub body: Option<String>,
     /// Frames that show the robot, in temporal order.
-    frames: Vec<Frame>,
+    frames: Cow<'a, [Frame]>,
     lost: usize,
     jumps: usize,
 }
@@ -40,15 +41,25 @@ const TOLERANCE_CM: f64 = 4.0;
 /// Allowed tracking error in heading, rad.
 const TOLERANCE_RAD: f64 = 0.25;
 
-impl Track {
+impl<'a> Track<'a> {
     /// Builds a track from frames, `None` where the robot was lost, without jumps.
     ///
     /// # Errors
-    /// When a frame is not later than the one before, or when fewer than two frames show the robot.
+    /// As [`Track::seen`].
     pub fn of(file: &Path, frames: Vec<Option<Frame>>, robot: &Robot) -> Result<Self> {
         let all = frames.len();
         let seen: Vec<Frame> = frames.into_iter().flatten().collect();
-        let (lost, whole) = (all - seen.len(), seen.len());
+        let lost = all - seen.len();
+        Ok(Track { lost, ..Track::seen(file, seen, robot)? })
+    }
+
+    /// Builds a track from the frames that show the robot, without jumps.
+    ///
+    /// # Errors
+    /// When a frame is not later than the one before, or when there are fewer than two.
+    pub fn seen(file: &Path, seen: impl Into<Cow<'a, [Frame]>>, robot: &Robot) -> Result<Self> {
+        let seen = seen.into();
+        let whole = seen.len();
         if let Some(pair) = seen.windows(2).find(|pair| pair[1].t_ms <= pair[0].t_ms) {
             let what = format!("time {} ms is not later than {} ms before it", pair[1].t_ms, pair[0].t_ms);
             return Err(Error::in_file(file, what));
@@ -57,7 +68,7 @@ impl Track {
         if frames.len() < 2 {
             return Err(Error::in_file(file, format!("has {} frame(s) in which the robot was seen", frames.len())));
         }
-        Ok(Track { file: file.to_owned(), body: None, lost, jumps: whole - frames.len(), frames })
+        Ok(Track { file: file.to_owned(), body: None, lost: 0, jumps: whole - frames.len(), frames })
     }
 
     /// Names the body; an empty name is that of the only body in a file.
@@ -66,8 +77,8 @@ impl Track {
     }
 
     /// Builds a track from frames known to be in order and without jumps.
-    pub fn without_check(file: &Path, frames: Vec<Frame>) -> Self {
-        Track { file: file.to_owned(), body: None, frames, lost: 0, jumps: 0 }
+    pub fn without_check(file: &Path, frames: impl Into<Cow<'a, [Frame]>>) -> Self {
+        Track { file: file.to_owned(), body: None, frames: frames.into(), lost: 0, jumps: 0 }
     }
 
     /// Returns the frames that show the robot.
@@ -112,10 +123,7 @@ impl Track {
         if span_ms > GAP_MS {
             return Sighting::Lost;
         }
-        let share = (t_ms - before.t_ms) / span_ms;
-        let turn_rad = wrap_rad(after.pose.heading_rad - before.pose.heading_rad);
-        let at_cm = before.pose.position_cm.lerp(after.pose.position_cm, share);
-        Sighting::At(Pose::new(at_cm.x, at_cm.y, before.pose.heading_rad + share * turn_rad))
+        Sighting::At(before.pose.between(&after.pose, (t_ms - before.t_ms) / span_ms))
     }
 }
 
@@ -130,21 +138,27 @@ impl Sighting {
 }
 
 /// Removes frames that the robot cannot have reached from the last kept frame.
-fn without_jumps(frames: Vec<Frame>, robot: &Robot) -> Vec<Frame> {
+fn without_jumps<'a>(frames: Cow<'a, [Frame]>, robot: &Robot) -> Cow<'a, [Frame]> {
     let cm_ms = MAX_SPEED_RATIO * robot.full_speed_cm_s / 1000.0;
     let rad_ms = 2.0 * cm_ms / robot.track_cm;
-    let mut kept: Vec<Frame> = Vec::with_capacity(frames.len());
-    for frame in frames {
-        let is_reachable = kept.last().is_none_or(|last| {
-            let (change, ms) = (last.pose.relative(&frame.pose), frame.t_ms - last.t_ms);
-            change.position_cm.length() <= TOLERANCE_CM + cm_ms * ms
-                && change.heading_rad.abs() <= TOLERANCE_RAD + rad_ms * ms
-        });
-        if is_reachable {
-            kept.push(frame);
-        }
+    let is_reachable = |from: &Frame, to: &Frame| {
+        let (change, ms) = (from.pose.relative(&to.pose), to.t_ms - from.t_ms);
+        change.position_cm.length() <= TOLERANCE_CM + cm_ms * ms
+            && change.heading_rad.abs() <= TOLERANCE_RAD + rad_ms * ms
+    };
+    if frames.windows(2).all(|pair| is_reachable(&pair[0], &pair[1])) {
+        return frames;
     }
-    kept
+    let mut frames = frames.into_owned();
+    let mut last = frames[0];
+    frames.retain(|frame| {
+        let is_kept = is_reachable(&last, frame);
+        if is_kept {
+            last = *frame;
+        }
+        is_kept
+    });
+    Cow::Owned(frames)
 }
 
 #[cfg(test)]
@@ -152,7 +166,7 @@ mod tests {
     use super::*;
     use mindgap_built_in_robot::default_robot;
 
-    fn track(frames: &[Option<[f64; 4]>]) -> Result<Track> {
+    fn track(frames: &[Option<[f64; 4]>]) -> Result<Track<'static>> {
         let frame = |[t_ms, x, y, heading]: [f64; 4]| Frame { t_ms, pose: Pose::new(x, y, heading) };
         let frames = frames.iter().map(|values| values.map(frame)).collect();
         Track::of(Path::new("track.csv"), frames, &default_robot())

@@ -1,10 +1,9 @@
 //! Logs as one of several range sensors heard them.
 
 use std::collections::BTreeSet;
-use std::sync::Arc;
 
 use super::inspection::Inspection;
-use super::range_sensor::{Sensors, column_of};
+use super::range_sensor::{RangeSensor, Sensors, column_of};
 use super::{Logs, Run};
 use mindgap_foundations::error::{Error, Result};
 
@@ -35,22 +34,6 @@ pub(super) fn silence_incomplete(runs: &mut [Run], have_echoes: &[Vec<bool>], mu
 }
 
 impl Logs {
-    /// Returns logs of one sensor as those of the first of these range sensors. `warn` receives a line for each of the others, which
-    /// was not heard.
-    pub fn of_first(mut self, sensors: Sensors, mut warn: impl FnMut(String)) -> Self {
-        for sensor in sensors.further() {
-            warn(format!(
-                "range sensor {:?} of robot.toml has no readings here: only those of the first are read",
-                sensor.name
-            ));
-        }
-        let sensors = Arc::new(sensors.first_alone());
-        for run in &mut self.runs {
-            run.rows = std::mem::take(&mut run.rows).of_sensors(Arc::clone(&sensors));
-        }
-        self
-    }
-
     /// Returns the robot's range sensors; of logs that were not read from a folder, the usual ones.
     pub fn sensors(&self) -> Sensors {
         self.runs.first().map(|run| run.rows.sensors().clone()).unwrap_or_default()
@@ -82,15 +65,19 @@ impl Logs {
 
     /// Returns the logs as each range sensor heard them, the first sensor first.
     pub fn by_sensor(&self) -> Vec<Heard> {
-        let sensors = self.sensors();
-        let mut all = vec![Heard { sensor: sensors.first().into(), logs: self.clone() }];
-        all.extend(sensors.further().iter().enumerate().map(|(index, sensor)| {
+        let first = Heard { sensor: self.sensors().first().into(), logs: self.clone() };
+        std::iter::once(first).chain(self.by_further_sensor()).collect()
+    }
+
+    /// Returns the logs as each further range sensor heard them.
+    pub fn by_further_sensor(&self) -> Vec<Heard> {
+        let heard = |(index, sensor): (usize, &RangeSensor)| {
             let mut logs = Logs { robot: self.robot, scene: self.scene.clone(), runs: Vec::new() };
             logs.robot.ultrasonic = Some(sensor.mount());
             logs.runs
                 .extend(self.runs.iter().map(|run| Run { name: run.name.clone(), rows: run.rows.heard_by(index) }));
             Heard { sensor: sensor.name.clone(), logs }
-        }));
-        all
+        };
+        self.sensors().further().iter().enumerate().map(heard).collect()
     }
 }

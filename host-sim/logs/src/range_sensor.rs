@@ -109,11 +109,6 @@ impl Sensors {
         first.into_iter().chain(self.further.iter().cloned()).collect()
     }
 
-    /// Returns the first alone.
-    pub(super) fn first_alone(&self) -> Self {
-        Sensors { first: self.first.clone(), further: Vec::new() }
-    }
-
     /// Returns the tables of a file whose first sensor is mounted like this: `[ultrasonic]` and the `[[range_sensor]]` tables.
     pub(super) fn tables(&self, mount: Option<Ultrasonic>) -> (Option<Ultrasonic>, Vec<RangeSensor>) {
         match (&self.first, mount) {

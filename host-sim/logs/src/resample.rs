@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::{Logs, Row, Rows, Run};
-use mindgap_foundations::geometry::{Pose, wrap_rad};
+use mindgap_foundations::geometry::Pose;
 
 impl Logs {
     /// Returns the logs with rows every `step_ms`, which must be at least their present step. Commands are averaged over the step,
@@ -91,8 +91,5 @@ fn pose(before: &Row, after: Option<Row>, t_ms: f64, usual_ms: f64) -> Option<Po
         return Some(from);
     }
     let to = after.pose.filter(|_| after.t_ms - before.t_ms < GAP * usual_ms)?;
-    Some(Pose {
-        position_cm: from.position_cm.lerp(to.position_cm, share),
-        heading_rad: wrap_rad(from.heading_rad + share * wrap_rad(to.heading_rad - from.heading_rad)),
-    })
+    Some(from.between(&to, share))
 }

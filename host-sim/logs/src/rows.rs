@@ -41,9 +41,13 @@ impl Rows {
         Rows::default().of_sensors(sensors)
     }
 
-    /// Returns the rows of a robot with these range sensors; the readings so far are those of the first.
+    /// Returns the rows of a robot with these range sensors: with the readings of the first, and of those further ones that it had
+    /// by the same name.
     pub fn of_sensors(self, sensors: Arc<Sensors>) -> Self {
-        let further = vec![Column::new(Unit::AsWritten); sensors.further().len()];
+        let had = |name: &str| self.sensors.further().iter().position(|sensor| sensor.name == name);
+        let column =
+            |index: Option<usize>| index.map_or(Column::new(Unit::AsWritten), |index| self.further[index].clone());
+        let further = sensors.further().iter().map(|sensor| column(had(&sensor.name))).collect();
         Rows { sensors, further, ..self }
     }
 

@@ -77,8 +77,24 @@ impl Run {
     ///
     /// # Errors
     /// As [`Run::read`].
-    pub fn parse(path: &Path, text: &str, required: &[&str], mut warn: impl FnMut(String)) -> Result<Self> {
-        Ok(Run { name: name_of(path), rows: rows(path, text.as_bytes(), required, &Arc::default(), &mut warn)?.0 })
+    pub fn parse(path: &Path, text: &str, required: &[&str], warn: impl FnMut(String)) -> Result<Self> {
+        Run::parse_of(path, text, required, &Arc::default(), warn).map(|(run, _)| run)
+    }
+
+    /// Parses the text of a file of a robot with these range sensors, and whether each of them has a column; `path` is for messages
+    /// and the run's name.
+    ///
+    /// # Errors
+    /// As [`Run::read`].
+    pub fn parse_of(
+        path: &Path,
+        text: &str,
+        required: &[&str],
+        sensors: &Arc<Sensors>,
+        mut warn: impl FnMut(String),
+    ) -> Result<(Self, Vec<bool>)> {
+        let (rows, have_echoes) = rows(path, text.as_bytes(), required, sensors, &mut warn)?;
+        Ok((Run { name: name_of(path), rows }, have_echoes))
     }
 
     /// Writes a run.

@@ -3,6 +3,7 @@
 use std::fs;
 
 use mindgap_tests::command::{Outcome, Sandbox};
+use mindgap_tests::range_sensors::add;
 use serde_json::Value;
 
 use super::schemas::is_described;
@@ -94,6 +95,30 @@ fn a_patch_is_proved_by_held_out_runs_or_withdrawn() {
     assert_eq!((none.code, none.err.lines().count()), (1, 1), "{}", none.err);
     assert!(none.err.contains("was not written by the simulator's command"), "{}", none.err);
     assert_eq!(sandbox.text("tries").lines().count(), 2, "a failure is repeated once");
+}
+
+#[test]
+fn every_range_sensor_of_recordings_and_folders_is_compared() {
+    let sandbox = Sandbox::new();
+    for (folder, points_deg) in [("logs", 60.0), ("real", 85.0)] {
+        sandbox.run(&format!("record --out {folder} --runs 12 --steps 60 --seed 5"));
+        add(&sandbox, folder, "left", [60.0, points_deg]);
+    }
+    let runs = |folder: &str| (0..12).map(|run| format!("{folder}/run-{run:03}.csv")).collect::<Vec<_>>().join(" ");
+    let files = "--robot logs/robot.toml --scene logs/scene.toml --out kept";
+    let of_files = format!("{} --real {} {files}", runs("logs"), runs("real"));
+    for sides in ["logs --real real", &of_files] {
+        let said = sandbox.run(&format!("compare {sides} --json found.json"));
+        let found = sandbox.json("found.json");
+        let effects = found["effects"].as_array().expect("effects");
+        let turned = effects.iter().find(|effect| effect["id"] == "sonar_yaw");
+        let turned = turned.unwrap_or_else(|| panic!("{sides}: {said}"));
+        assert_eq!(turned["sensor"], "left", "{sides}: {said}");
+        assert!((turned["parameters"]["deg"].as_f64().expect("an angle") - 25.0).abs() < 6.0, "{sides}: {turned}");
+        assert_eq!(effects.iter().filter(|effect| effect["sensor"] == "ultrasonic").count(), 0, "{sides}: {said}");
+    }
+    assert!(sandbox.text("kept/robot/run-000.csv").contains("echo_left_cm"));
+    assert!(sandbox.run("info kept/simulator.json").contains("left"));
 }
 
 #[test]

@@ -6,6 +6,7 @@ use mindgap_foundations::random::{Generator, generator};
 use mindgap_logs::{Logs, Scene};
 use mindgap_tests::command::Sandbox;
 use mindgap_tests::form::short_or_long;
+use mindgap_tests::range_sensors::table;
 use rand::RngExt;
 
 /// Largest error of a clock offset.
@@ -181,6 +182,62 @@ fn the_robot_is_found_among_the_bodies_of_a_take() {
 }
 
 #[test]
+fn without_a_track_counters_are_imported_and_diagnosed() {
+    let sandbox = with_a_drive();
+    let untracked = CALL.replace("track.csv", "");
+    let said = sandbox.run(&untracked);
+    assert!(
+        said.contains("poses: no poses were found: a diagnosis compares the commands with rotation counters"),
+        "{said}"
+    );
+    let report = sandbox.json("report.json");
+    let run = &report["logs"][0]["run"];
+    assert!(run["track"].is_null() && run["offset_ms"].is_null() && run["outside"] == run["rows"], "{run}");
+    let logs = Logs::read(&sandbox.path().join("logs"), |warning| panic!("{warning}")).expect("logs");
+    let rows = &logs.runs[0].rows;
+    assert!(rows.len() == STEPS + 1 && rows.iter().all(|row| row.pose.is_none() && row.rot_left_deg.is_some()));
+    assert!(sandbox.run("check logs").contains("100 % of rows have rot_left_deg, rot_right_deg"));
+    sandbox.run("diagnose kinematic logs --json gap.json");
+    assert_eq!(sandbox.json("gap.json")["compared"], serde_json::json!(["rot_left", "rot_right"]));
+    // A track that cannot be read is no missing track, and a log that cannot be read leaves the others.
+    sandbox.write("broken.csv", "time_s,x_m\n0,1\n1,1\n");
+    let refusal = sandbox.refused(&format!("{untracked} broken.csv").replace("--out logs", "--out none"));
+    assert!(refusal.starts_with("broken.csv:1: no column for y"), "{refusal}");
+    sandbox.write("torn.csv", "t_ms,left,right,rot_left_deg,rot_right_deg\n0,1,1,0,0\n");
+    let said = sandbox.run(&format!("{untracked} torn.csv --force"));
+    assert!(said.contains("excluded: torn.csv: has 1 row(s)"), "{said}");
+    sandbox.edit_cells("run-000.csv", |cells| (cells[3], cells[4]) = ("0", "0"));
+    let refusal = sandbox.refused(&untracked.replace("--out logs", "--out none"));
+    assert!(refusal.starts_with("run-000.csv: its rotation counters never change"), "{refusal}");
+}
+
+#[test]
+fn every_range_sensor_of_a_brick_is_read_under_its_name() {
+    let sandbox = with_a_drive();
+    sandbox.edit("robot.toml", |text| text + &table("left", 90.0) + &table("rear", 180.0));
+    let header = "t_ms,left,right,rot_left_deg,rot_right_deg,battery_mv,echo_cm";
+    sandbox.edit("run-000.csv", |text| {
+        let row = |(at, line): (usize, &str)| {
+            format!("{line},{}\r\n", if at == 0 { "echo_left_cm".into() } else { (50 + at).to_string() })
+        };
+        assert!(text.starts_with(header), "{text}");
+        text.lines().enumerate().map(row).collect()
+    });
+    let outcome = sandbox.call(CALL);
+    assert_eq!(outcome.code, 0, "{}", outcome.err);
+    assert!(
+        outcome.err.contains("range sensor rear of robot.toml has no readings: echo_rear_cm is not written"),
+        "{}",
+        outcome.err
+    );
+    let logs = Logs::read(&sandbox.path().join("logs"), |warning| panic!("{warning}")).expect("logs");
+    let rows = &logs.runs[0].rows;
+    assert_eq!(rows.sensors().names().collect::<Vec<_>>(), ["ultrasonic", "left"]);
+    assert!((0..rows.len()).all(|row| rows.further_cm(0, row) == Some(51.0 + row as f64)));
+    assert!(rows.iter().any(|row| row.echo_cm.is_some()) && rows.iter().any(|row| row.pose.is_some()));
+}
+
+#[test]
 fn logs_and_tracks_of_different_drives_are_refused() {
     let camera = Camera { offset_ms: 5e3, drift: 0.0 };
     let drive_of = |seed| drive(seed, camera);
@@ -195,8 +252,6 @@ fn logs_and_tracks_of_different_drives_are_refused() {
     sandbox.write("track.csv", drive(31, Camera { drift: 0.01, ..camera }).track);
     let refusal = sandbox.refused(CALL);
     assert!(refusal.contains("drift apart by 10.") || refusal.contains("drift apart by 9."), "{refusal}");
-    let refusal = sandbox.refused(&CALL.replace("track.csv", ""));
-    assert!(refusal.contains("none of the files is a track of a camera"), "{refusal}");
     let refusal = sandbox.refused(&CALL.replace("run-000.csv", ""));
     assert!(refusal.contains("none of the files is a log of a brick"), "{refusal}");
     sandbox.write("track.csv", "t,x,y,theta\n0,1,1,0\n33,1,1,0\n");

@@ -83,6 +83,85 @@ fn wrong_counters_and_gyros_are_found_and_become_no_cause() {
     sandbox.run("check logs");
 }
 
+/// Expects the drive in rows without poses, and a diagnosis of these channels.
+#[track_caller]
+fn assert_untracked(sandbox: &Sandbox, said: &str, channels: &[&str]) {
+    assert!(said.contains("poses: no poses were found"), "{said}");
+    assert!(rows(sandbox).iter().all(|row| row.pose.is_none()) && rows(sandbox).len() > 180, "{said}");
+    assert!(sandbox.text("logs/run-000.csv").starts_with("t_ms,left,right,x_cm,y_cm,heading_deg,echo_cm"));
+    assert_eq!(sandbox.json("report.json")["findings"].as_array().map(Vec::len), Some(0));
+    assert!(sandbox.run("check logs").contains("No defects found."));
+    sandbox.run("diagnose kinematic logs --json gap.json");
+    let gap = sandbox.json("gap.json");
+    assert_eq!((&gap["verdict"], &gap["compared"]), (&"no_gap".into(), &serde_json::json!(channels)), "{said}");
+    assert!(
+        gap["not_compared"].as_array().is_some_and(|channels| channels.iter().any(|of| of["channel"] == "forward"))
+    );
+}
+
+#[test]
+fn without_poses_what_the_robot_measures_is_imported_and_diagnosed() {
+    let sandbox = with_streams();
+    let call = CALL.replace(" track.csv", "");
+    let all = ["rot_left", "rot_right", "gyro"];
+    let measured = own("t_s,rot_left_rad,rot_right_rad,gyro_rad_s", |row| row);
+    sandbox.write("own.csv", &measured);
+    let said = sandbox.run(&call);
+    assert_untracked(&sandbox, &said, &all);
+    assert_measured(&rows(&sandbox));
+    assert!(said.contains("rotation counters, which show the drive up to the wheels, and a gyro"), "{said}");
+    assert!(said.contains("to add poses, import them") && said.contains("motion lags the commands by 0 ms"), "{said}");
+    assert!(sandbox.json("report.json")["untracked"].is_string());
+
+    // On another clock.
+    sandbox.write("own.csv", own("t_s,rot_left_rad,rot_right_rad,gyro_rad_s", |[s, l, r, w]| [s + 5000.0, l, r, w]));
+    let said = sandbox.run(&call);
+    let clocks = sandbox.json("report.json")["recordings"][0]["clocks"].clone();
+    let off_ms = clocks["offset_ms"].as_f64().expect("a number") - 5e6;
+    assert!(said.contains("two clocks: that of the motion is") && off_ms.abs() < 25.0, "{clocks}");
+    assert_untracked(&sandbox, &said, &all);
+
+    sandbox.write("own.csv", own("t_s,something,else,gyro_rad_s", |row| row));
+    let said = sandbox.run(&call);
+    assert_untracked(&sandbox, &said, &["gyro"]);
+    assert!(!said.contains("rotation counters"), "{said}");
+
+    // Everything in one table.
+    let commands = sandbox.text("command.csv");
+    let joined =
+        commands.lines().zip(measured.lines()).map(|(a, b)| format!("{a},{}\n", b.split_once(',').expect("cells").1));
+    sandbox.write("own.csv", joined.collect::<String>());
+    let said = sandbox.run(&call.replace(" command.csv", ""));
+    assert_untracked(&sandbox, &said, &all);
+}
+
+#[test]
+fn recordings_that_show_no_motion_are_refused() {
+    let sandbox = with_streams();
+    let call = CALL.replace(" track.csv", "");
+    sandbox.write(
+        "own.csv",
+        drive().iter().fold("t_s,range_m\n".to_owned(), |text, sample| text + &format!("{:.3},1\n", sample.s)),
+    );
+    for call in [&call, &call.replace(" own.csv", "")] {
+        let refusal = sandbox.refused(call);
+        assert!(refusal.contains("a drive needs commands, and poses or else rotation counters or a gyro"), "{refusal}");
+    }
+    sandbox.write("own.csv", own(HEADER, |[s, ..]| [s, 3.0, 3.0, 0.0]).replace("js/", "/joint_states/"));
+    let refusal = sandbox.refused(&call);
+    assert!(refusal.contains("the robot never moves: its rotation counters stay within 0.0 cm"), "{refusal}");
+    sandbox.write(
+        "own.csv",
+        own(HEADER, |[s, l, r, w]| [s, l * libm::sin(s), r * libm::cos(3.0 * s), w]).replace("js/", "/joint_states/"),
+    );
+    let refusal = sandbox.refused(&call);
+    assert!(refusal.starts_with("command.csv: commands and rotation counters have nothing in common"), "{refusal}");
+    sandbox.write("track.csv", "t_s,x_m,y_m,yaw_rad\n0,1,broken,0\n1,1,1,0\n");
+    sandbox.write("own.csv", own(HEADER, |row| row).replace("js/", "/joint_states/"));
+    let refusal = sandbox.refused(CALL);
+    assert!(refusal.starts_with("track.csv:2: y_m = \"broken\" is not a number"), "{refusal}");
+}
+
 #[test]
 fn a_file_of_measurements_that_cannot_be_read_leaves_the_drive() {
     let sandbox = with_streams();

@@ -394,6 +394,15 @@ fn bags_give_the_same_rows_from_different_topics() {
     );
     // After the last message of the localiser its frame stays in place.
     assert_driven(&localised, 0.0, 1.0);
+    let (said, untracked) = import("untracked.mcap");
+    assert!(said.contains("poses: no poses were found: ") && said.contains(" with a gyro"), "{said}");
+    assert!(untracked.len() == tracked.len() && untracked.iter().all(|row| row.pose.is_none()), "{said}");
+    assert_measured(&untracked);
+    let (said, both) = import("tracker.mcap untracked.mcap");
+    assert!(said.contains("no poses were found in 1 of 2 recordings") && said.contains("tracked"), "{said}");
+    assert_eq!((both.len(), both.iter().filter(|row| row.pose.is_some()).count()), (2 * tracked.len(), tracked.len()));
+    let refusal = sandbox.refused("import bag untracked.mcap --left-joint a --right-joint b --out other");
+    assert!(refusal.contains("has no joint a"), "{refusal}");
     let refusal = sandbox.refused("import bag tracker.mcap --poses /nowhere --out other");
     assert!(refusal.starts_with("tracker.mcap: /nowhere is not a topic of poses"), "{refusal}");
     sandbox.run("check logs");

@@ -1,6 +1,8 @@
 //! Programs for Pybricks hubs, run in a real MicroPython, behave like the core's machine and networks.
 
+use std::path::Path;
 use std::process::Command;
+use std::sync::Arc;
 
 use mindgap_controller_export::collect::Commands;
 use mindgap_controller_export::pybricks_networks::{PybricksNetwork, pybricks_networks};
@@ -104,11 +106,9 @@ fn collecting_program_prints_a_log_and_turns_away_from_walls() {
         );
         // The printed log is one that the reader of logs accepts, and its commands are those of the motors.
         let lines: Vec<&str> = driven[0].as_array().unwrap().iter().map(|line| line.as_str().unwrap()).collect();
-        let folder = tempfile::tempdir().unwrap();
-        let file = folder.path().join("run.txt");
-        std::fs::write(&file, format!("Running\n{}\n", lines.join("\n"))).unwrap();
-        assert!(is_brick_log(&file).unwrap());
-        let log = BrickLog::read(&file, |warning| panic!("{warning}")).unwrap();
+        let text = format!("Running\n{}\n", lines.join("\n"));
+        assert!(is_brick_log(&text));
+        let log = BrickLog::parse(Path::new("run.txt"), &text, &Arc::default(), |warning| panic!("{warning}")).unwrap();
         assert_eq!((log.run.rows.len(), log.is_truncated, *lines.last().unwrap()), (61, false, "finished"));
         for (row, set) in log.run.rows.iter().zip(driven[1].as_array().unwrap()) {
             assert_eq!(json!([row.t_ms as u32, row.left as i32, row.right as i32]), *set);

@@ -11,11 +11,16 @@ use mindgap_import::streams::recordings;
 use mindgap_logs::range_sensor::Sensors;
 use mindgap_logs::{Logs, Robot, Scene};
 
-/// Reads one side. Recordings are imported with this robot and scene; folders of logs have their own.
+/// Reads one side. Recordings are imported with this robot, its range sensors and this scene; folders of logs have their own.
 ///
 /// # Errors
 /// If a file cannot be read, if recordings cannot be imported, or if folders are of different rooms.
-pub fn read(paths: &[PathBuf], robot: Option<Robot>, scene: &Scene, mut warn: impl FnMut(String)) -> Result<Logs> {
+pub fn read(
+    paths: &[PathBuf],
+    robot: Option<(Robot, Sensors)>,
+    scene: &Scene,
+    mut warn: impl FnMut(String),
+) -> Result<Logs> {
     let (folders, files): (Vec<&PathBuf>, Vec<&PathBuf>) =
         paths.iter().partition(|path| path.is_dir() && !bag::is_bag(path));
     match (folders.as_slice(), files.is_empty()) {
@@ -24,7 +29,7 @@ pub fn read(paths: &[PathBuf], robot: Option<Robot>, scene: &Scene, mut warn: im
             let mut logs = Logs::read(first, &mut warn)?;
             for folder in others {
                 let more = Logs::read(folder, &mut warn)?;
-                if more.scene != logs.scene || more.robot != logs.robot {
+                if more.scene != logs.scene || more.robot != logs.robot || more.sensors() != logs.sensors() {
                     return Err(Error::in_file(
                         folder,
                         format!("has another robot.toml or scene.toml than {}", first.display()),
@@ -40,24 +45,24 @@ pub fn read(paths: &[PathBuf], robot: Option<Robot>, scene: &Scene, mut warn: im
     }
 }
 
-/// Returns the robot that a side states, if it is a folder of logs.
+/// Returns the robot and the range sensors that a side states, if it is a folder of logs.
 ///
 /// # Errors
 /// If its robot.toml cannot be read.
-pub fn robot_of(paths: &[PathBuf]) -> Result<Option<Robot>> {
+pub fn robot_of(paths: &[PathBuf]) -> Result<Option<(Robot, Sensors)>> {
     let folder = paths.iter().find(|path| path.is_dir() && !bag::is_bag(path));
-    folder.map(|folder| Robot::read(&folder.join("robot.toml"))).transpose()
+    folder.map(|folder| Robot::read_all(&folder.join("robot.toml"))).transpose()
 }
 
-fn import(files: &[&PathBuf], robot: Option<Robot>, scene: &Scene) -> Result<Logs> {
+fn import(files: &[&PathBuf], robot: Option<(Robot, Sensors)>, scene: &Scene) -> Result<Logs> {
     let (bags, streams): (Vec<PathBuf>, Vec<PathBuf>) =
         files.iter().map(|file| (*file).clone()).partition(|path| bag::is_bag(path));
-    let sensors = Sensors::default();
-    let mounts = sensors.all(robot.and_then(|robot| robot.ultrasonic));
-    let read = bag::recordings(&bags, &Choice::default(), &mounts, |_| ());
+    let sensors = robot.as_ref().map(|(robot, sensors)| sensors.all(robot.ultrasonic)).unwrap_or_default();
+    let read = bag::recordings(&bags, &Choice::default(), &sensors, |_| ());
     let mut all = read.into_iter().collect::<Result<Vec<Recording>>>()?;
     if !streams.is_empty() {
-        all.extend(recordings(&streams, &Statements::default(), |_, _| ())?.recordings);
+        let stated = Statements { sensors, ..Statements::default() };
+        all.extend(recordings(&streams, &stated, |_, _| ())?.recordings);
     }
-    Ok(assemble(all, robot.map(|robot| (robot, sensors)), scene.clone(), Stated::default(), |_, _| ())?.logs)
+    Ok(assemble(all, robot, scene.clone(), Stated::default(), |_, _| ())?.logs)
 }

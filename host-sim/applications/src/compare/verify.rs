@@ -14,7 +14,8 @@ use mindgap_foundations::geometry::Pose;
 use mindgap_foundations::statistics::summary::median;
 use mindgap_import::bag;
 use mindgap_learning::evaluation::paths::PathError;
-use mindgap_logs::{Logs, Run};
+use mindgap_logs::range_sensor::Sensors;
+use mindgap_logs::{Logs, Robot, Run};
 use mindgap_workers::program::Program;
 
 /// How far path ends are from the robot's, before and after a patch.
@@ -95,6 +96,11 @@ impl Verifier<'_> {
         once().or_else(|_| once())
     }
 
+    /// Returns the robot and its range sensors.
+    fn robot(&self) -> (Robot, Sensors) {
+        (self.real.robot, self.real.sensors())
+    }
+
     /// Reads what a simulator recorded: a run log, a bag, or poses as CSV.
     fn path_of(&self, commands: &Path, out: &Path) -> Result<Vec<(f64, Pose)>> {
         let of_run = |run: &Run| {
@@ -102,7 +108,7 @@ impl Verifier<'_> {
             run.rows.iter().filter_map(|row| Some((row.t_ms - first_ms, row.pose?))).collect::<Vec<_>>()
         };
         if out.is_dir() || bag::is_bag(out) {
-            let logs = sides::read(&[out.into()], Some(self.real.robot), &self.real.scene, |_| ())?;
+            let logs = sides::read(&[out.into()], Some(self.robot()), &self.real.scene, |_| ())?;
             return logs.runs.first().map(of_run).ok_or_else(|| Error::in_file(out, "holds no run"));
         }
         let required = ["t_ms", "left", "right", "x_cm", "y_cm", "heading_deg"];
@@ -110,8 +116,8 @@ impl Verifier<'_> {
             return Ok(of_run(&run));
         }
         let both = [commands.to_owned(), out.to_owned()];
-        let alone = sides::read(&both[1..], Some(self.real.robot), &self.real.scene, |_| ());
-        let logs = alone.or_else(|_| sides::read(&both, Some(self.real.robot), &self.real.scene, |_| ()))?;
+        let alone = sides::read(&both[1..], Some(self.robot()), &self.real.scene, |_| ());
+        let logs = alone.or_else(|_| sides::read(&both, Some(self.robot()), &self.real.scene, |_| ()))?;
         logs.runs.first().map(of_run).ok_or_else(|| Error::in_file(out, "holds no run"))
     }
 }

@@ -32,7 +32,8 @@ use mindgap_import::units::{Angle, Length, Time, Units};
 #[derive(Args)]
 pub struct Streams {
     /// Files to import. A file with both commands and poses is one recording. Otherwise files are matched in order: the first
-    /// with commands, the first with poses and the first with readings form one recording, and so on.
+    /// with commands, the first with poses and the first with readings form one recording, and so on. Without poses, rotation
+    /// counters or a gyro show the motion.
     #[arg(required = true)]
     files: Vec<PathBuf>,
     /// Quantity and unit of each column: TOML with one table per file.
@@ -204,17 +205,20 @@ impl Target {
 
 fn describe(report: &RecordingsReport, step_ms: f64, out: &Path) -> String {
     let mut text: String = report.recordings.iter().map(|recording| of_recording(recording, step_ms)).collect();
-    let check = &report.odometry_check;
-    let number = |value: f64| format!("{value:.0}");
-    text += &table::text(
-        ["motion", "commanded", "tracked"],
-        &[
-            ["travel (cm)".to_owned(), number(check.commanded_cm), number(check.tracked_cm)],
-            ["rotation (deg)".to_owned(), number(check.commanded_deg), number(check.tracked_deg)],
-        ],
-    );
+    if report.recordings.iter().any(|recording| !recording.is_untracked()) {
+        let check = &report.odometry_check;
+        let number = |value: f64| format!("{value:.0}");
+        text += &table::text(
+            ["motion", "commanded", "tracked"],
+            &[
+                ["travel (cm)".to_owned(), number(check.commanded_cm), number(check.tracked_cm)],
+                ["rotation (deg)".to_owned(), number(check.commanded_deg), number(check.tracked_deg)],
+            ],
+        );
+    }
     let mut lines = |title: &str, lines: &[String]| lines.iter().for_each(|line| text += &format!("{title}: {line}\n"));
     lines("frame", report.frame.as_slice());
+    lines("poses", report.untracked.as_slice());
     text += &excluded(&report.left_out);
     let mut lines = |title: &str, lines: &[String]| lines.iter().for_each(|line| text += &format!("{title}: {line}\n"));
     lines("logs", &report.findings);
@@ -316,10 +320,10 @@ fn of_clocks(clocks: &ClocksReport) -> String {
         unexplained.map_or("no motion".into(), |share| format!("{:.0} % of the motion unexplained", 100.0 * share));
     match (shared, lag_ms) {
         (true, Some(lag_ms)) => format!("one clock: motion lags the commands by {lag_ms:.0} ms ({differs})"),
-        (true, None) => format!("one clock, as stated ({differs})"),
+        (true, None) => format!("one clock, as stated or assumed ({differs})"),
         (false, _) => format!(
-            "two clocks: the pose clock is {:.3} s ahead and drifts by {:.0} ppm ({differs}); estimated from the motion, so a \
-             delay of the robot is not visible",
+            "two clocks: that of the motion is {:.3} s ahead and drifts by {:.0} ppm ({differs}); estimated from the motion, so \
+             a delay of the robot is not visible",
             offset_ms / 1e3,
             1e6 * drift
         ),

@@ -1,4 +1,7 @@
-//! Finds one clock for commands and poses: the clock they share, or an alignment by their motion.
+//! Finds one clock for commands and poses, or what the robot measured of its motion if there are none: the clock they share, or an
+//! alignment by their motion.
+
+use std::borrow::Cow;
 
 use crate::clocks::{Clocks, align, gains, lag};
 use crate::motion::CumulativeMotion;
@@ -46,16 +49,22 @@ pub fn aligned(
     if let Some(found) = found {
         return Ok(report(found.clocks, false, None, Some(found.unexplained)));
     }
+    // What the robot measured is its own, even if a counter runs backwards; a gyro shows nothing of straight travel.
+    if !prepared.is_tracked && (is_one_clock || lag.is_none()) {
+        let (lag_ms, unexplained) = lag.unzip();
+        return Ok(report(Clocks { offset_ms: 0.0, drift: 0.0 }, true, lag_ms, unexplained));
+    }
+    let shown_by = prepared.shown_by;
     let what = match lag {
         Some((_, unexplained)) => format!(
-            "commands and poses have nothing in common: {:.0} % of the motion is unexplained with the given times, and no clock \
-             offset fits; are they from one drive? (if so, state the lead of the poses' clock by --offset-ms)",
+            "commands and {shown_by} have nothing in common: {:.0} % of the motion is unexplained with the given times, and no clock \
+             offset fits; are they from one drive? (if so, state the lead of their clock by --offset-ms)",
             100.0 * unexplained
         ),
         // Nothing moves, or the times do not overlap.
         None => format!(
-            "commands ({}) and poses ({}) do not overlap or nothing moves, and no clock offset fits; state the lead of the \
-             poses' clock by --offset-ms",
+            "commands ({}) and {shown_by} ({}) do not overlap or nothing moves, and no clock offset fits; state the lead of \
+             their clock by --offset-ms",
             span(&commanded),
             span(&observed)
         ),
@@ -67,8 +76,6 @@ pub fn aligned(
 pub fn is_mirrored(prepared: &Prepared, robot: &Robot, is_one_clock: bool, offset_ms: Option<f64>) -> bool {
     let commanded = commanded(&prepared.commands, robot);
     let observed = prepared.track.motion();
-    let opposite: Vec<CumulativeMotion> =
-        observed.iter().map(|m| CumulativeMotion { by: [-m.by[0], m.by[1]], ..*m }).collect();
     let explained = |track: &[CumulativeMotion]| {
         let lag = lag(&commanded, &shifted(track, offset_ms.unwrap_or(0.0)), MAX_LAG_MS);
         lag.is_some_and(|(_, unexplained)| unexplained <= MAX_UNEXPLAINED)
@@ -77,12 +84,17 @@ pub fn is_mirrored(prepared: &Prepared, robot: &Robot, is_one_clock: bool, offse
     if explained(&observed) {
         return false;
     }
+    let opposite: Vec<CumulativeMotion> =
+        observed.iter().map(|m| CumulativeMotion { by: [-m.by[0], m.by[1]], ..*m }).collect();
     explained(&opposite) || !is_one_clock && offset_ms.is_none() && !aligned(&observed) && aligned(&opposite)
 }
 
 /// Returns motion on a clock that lags by `ms`.
-pub fn shifted(motion: &[CumulativeMotion], ms: f64) -> Vec<CumulativeMotion> {
-    motion.iter().map(|m| CumulativeMotion { t_ms: m.t_ms - ms, ..*m }).collect()
+pub fn shifted(motion: &[CumulativeMotion], ms: f64) -> Cow<'_, [CumulativeMotion]> {
+    if ms == 0.0 {
+        return Cow::Borrowed(motion);
+    }
+    Cow::Owned(motion.iter().map(|m| CumulativeMotion { t_ms: m.t_ms - ms, ..*m }).collect())
 }
 
 fn span(motion: &[CumulativeMotion]) -> String {

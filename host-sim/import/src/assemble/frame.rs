@@ -48,8 +48,9 @@ pub fn correct_frame(recordings: &mut [Recording], logs: &Logs) -> Option<String
 pub fn unmirror(recordings: &mut [Recording], robot: &Robot, scene: &Scene, stated: Stated) -> Result<Option<String>> {
     let all = recordings.len();
     let mirrored = |recording: &&mut Recording| {
-        Prepared::of(recording, robot)
-            .is_ok_and(|prepared| is_mirrored(&prepared, robot, recording.has_one_clock, stated.offset_ms))
+        recording.is_tracked()
+            && Prepared::of(recording, robot)
+                .is_ok_and(|prepared| is_mirrored(&prepared, robot, recording.has_one_clock, stated.offset_ms))
     };
     let mut mirrored: Vec<&mut Recording> = recordings.iter_mut().filter(mirrored).collect();
     if mirrored.is_empty() {
@@ -91,7 +92,7 @@ fn walls_fit(recordings: &[&mut Recording], robot: &Robot, scene: &Scene) -> Res
 }
 
 fn apply<'a>(recordings: impl Iterator<Item = &'a mut Recording>, change: &dyn Fn(&Pose) -> Pose) {
-    let frames = recordings.flat_map(|recording| &mut recording.poses).flatten();
+    let frames = recordings.flat_map(|recording| &mut recording.poses);
     frames.for_each(|frame| frame.pose = change(&frame.pose));
 }
 

@@ -9,7 +9,6 @@ use crate::own_motion::OwnMotion;
 use crate::recording::{Commands, Readings, Recording};
 use crate::track::Track;
 use mindgap_foundations::error::{Error, Result};
-use mindgap_foundations::geometry::{Pose, wrap_rad};
 use mindgap_foundations::statistics::summary::median;
 use mindgap_logs::range_sensor::Sensors;
 use mindgap_logs::{CommandChange, CommandChanges, Robot, Row, Rows, Run};
@@ -35,48 +34,64 @@ const STILL_RAD: f64 = 0.09;
 const MAX_DURATION_MS: f64 = 3.6e8;
 
 /// A recording with motor commands and a track without jumps.
-pub struct Prepared {
+pub struct Prepared<'a> {
     /// File of the track.
     pub file: PathBuf,
     /// Motor commands.
     pub commands: Commands,
     /// Number of commands that were saturated at the robot's full speed.
     pub saturated: usize,
-    /// The robot's poses.
-    pub track: Track,
+    /// The robot's poses; by dead reckoning if nobody tracked it.
+    pub track: Track<'a>,
+    /// What shows the motion, in words.
+    pub shown_by: &'static str,
     /// Number of poses excluded as jumps.
     pub jumps: usize,
-    readings: Vec<Readings>,
-    own_motion: OwnMotion,
+    /// Whether anybody tracked it.
+    pub is_tracked: bool,
+    readings: &'a [Readings],
+    own_motion: &'a OwnMotion,
     /// The range sensors of the rows.
     pub sensors: Arc<Sensors>,
 }
 
-impl Prepared {
+impl<'a> Prepared<'a> {
     /// Prepares a recording.
     ///
     /// # Errors
-    /// When many commands exceed the robot's speed, or its times span more than any recording.
-    pub fn of(recording: &Recording, robot: &Robot) -> Result<Self> {
-        let file = recording.track.clone();
+    /// When many commands exceed the robot's speed, its times span more than any recording, or nothing shows its motion.
+    pub fn of(recording: &'a Recording, robot: &Robot) -> Result<Self> {
+        let file = recording.file.clone();
         let (commands, saturated) = recording.commands.as_motor_commands(robot, &file)?;
         if commands.samples.len() < 2 {
             return Err(Error::in_file(&file, format!("has only {} command(s)", commands.samples.len())));
         }
         check_span(&file, commands.samples.iter().map(|(ms, _)| *ms))?;
-        check_span(&file, recording.poses.iter().flatten().map(|frame| frame.t_ms))?;
-        let (track, jumps) = track(&file, &recording.poses, robot)?;
-        let (readings, own_motion) = (recording.readings.clone(), recording.own_motion.clone());
+        check_span(&file, recording.poses.iter().map(|frame| frame.t_ms))?;
+        let (readings, own_motion) = (recording.readings.as_slice(), &recording.own_motion);
+        let is_tracked = recording.is_tracked();
+        let (track, jumps) = match is_tracked {
+            true => track(&file, &recording.poses, robot)?,
+            false => (reckoned(&file, own_motion, robot)?, 0),
+        };
+        let shown_by = match is_tracked {
+            true => "poses",
+            false if own_motion.has_counters() => "rotation counters",
+            false => "a gyro",
+        };
         let sensors = Arc::default();
-        Ok(Prepared { file, commands, saturated, track, jumps, readings, own_motion, sensors })
+        Ok(Prepared { file, commands, saturated, track, shown_by, jumps, is_tracked, readings, own_motion, sensors })
     }
 
-    /// Checks that the robot moves.
+    /// Checks that the robot moves; a gyro alone does not show that.
     ///
     /// # Errors
     /// When it stays in its place.
     pub fn check_motion(&self) -> Result<()> {
         let frames = self.track.frames();
+        if !self.is_tracked && !self.own_motion.has_counters() {
+            return Ok(());
+        }
         let Some(first) = frames.first() else { return Ok(()) };
         let moved = frames.iter().map(|frame| first.pose.relative(&frame.pose));
         let (cm, rad) = moved.fold((0.0_f64, 0.0_f64), |(cm, rad), change| {
@@ -90,11 +105,13 @@ impl Prepared {
         let commands = match fastest {
             0.0 => "and all commands are zero".to_owned(),
             fastest => format!(
-                "although commands reach {fastest:.0} % of full speed: are the motors on, and is this the robot's own pose?"
+                "although commands reach {fastest:.0} % of full speed: are the motors on, and are these its own {}?",
+                self.shown_by
             ),
         };
         let what = format!(
-            "the robot never moves: its poses stay within {cm:.1} cm and {:.1} deg, {commands}",
+            "the robot never moves: its {} stay within {cm:.1} cm and {:.1} deg, {commands}",
+            self.shown_by,
             rad.to_degrees()
         );
         Err(Error::in_file(&self.file, what))
@@ -157,7 +174,7 @@ impl Prepared {
             t_ms: since_ms,
             left,
             right,
-            pose: self.track.at(camera_ms).pose(),
+            pose: self.track.at(camera_ms).pose().filter(|_| self.is_tracked),
             echo_cm: first.and_then(|readings| readings.at(times_ms, robot.step_ms)),
             rot_left_deg: angle_deg(0),
             rot_right_deg: angle_deg(1),
@@ -178,31 +195,44 @@ fn check_span(file: &Path, mut times_ms: impl Iterator<Item = f64>) -> Result<()
     Err(Error::in_file(file, what))
 }
 
+/// Returns the track of a robot that nobody tracked.
+fn reckoned(file: &Path, own_motion: &OwnMotion, robot: &Robot) -> Result<Track<'static>> {
+    let frames = own_motion.dead_reckoned(robot);
+    if frames.len() < 2 {
+        return Err(Error::in_file(
+            file,
+            "has neither poses nor rotation counters nor a gyro: nothing shows its motion",
+        ));
+    }
+    Ok(Track::without_check(file, frames))
+}
+
 /// Returns the track of poses, interpolated for slow trackers, and the number of jumps.
-fn track(file: &Path, poses: &[Option<Frame>], robot: &Robot) -> Result<(Track, usize)> {
-    let seen: Vec<Frame> = poses.iter().flatten().copied().collect();
-    let usual_ms = spacing_ms(&seen);
-    let plain = Track::of(file, seen.into_iter().map(Some).collect(), robot)?;
-    let (report, frames) = (plain.report(), plain.frames());
+fn track<'a>(file: &Path, poses: &'a [Frame], robot: &Robot) -> Result<(Track<'a>, usize)> {
+    let usual_ms = spacing_ms(poses);
+    let plain = Track::seen(file, poses, robot)?;
+    let report = plain.report();
     // In a wrong unit nearly every frame is a jump: the scale check reports that.
     let has_wrong_unit = 2 * report.jumps > report.frames;
-    let kept: Vec<Frame> = if has_wrong_unit { poses.iter().flatten().copied().collect() } else { frames.to_vec() };
-    let jumps = if has_wrong_unit { 0 } else { report.jumps };
-    let mut dense: Vec<Frame> = Vec::with_capacity(kept.len());
-    for pair in kept.windows(2) {
+    let (kept, jumps) = if has_wrong_unit { (Track::without_check(file, poses), 0) } else { (plain, report.jumps) };
+    let parts = |pair: &[Frame]| {
         let ms = pair[1].t_ms - pair[0].t_ms;
-        let parts = if ms <= USUAL_GAP * usual_ms { (ms / DENSE_MS).ceil().max(1.0) } else { 1.0 };
+        if ms <= USUAL_GAP * usual_ms { (ms / DENSE_MS).ceil().max(1.0) } else { 1.0 }
+    };
+    let pairs = || kept.frames().windows(2).map(|pair| (pair, parts(pair)));
+    if pairs().all(|(_, parts)| parts == 1.0) {
+        return Ok((kept, jumps));
+    }
+    let mut dense: Vec<Frame> = Vec::with_capacity(kept.frames().len());
+    for (pair, parts) in pairs() {
         dense.extend((0..parts as usize).map(|part| between(&pair[0], &pair[1], part as f64 / parts)));
     }
-    dense.extend(kept.last());
+    dense.extend(kept.frames().last());
     Ok((Track::without_check(file, dense), jumps))
 }
 
 fn between(from: &Frame, to: &Frame, share: f64) -> Frame {
-    let turn_rad = wrap_rad(to.pose.heading_rad - from.pose.heading_rad);
-    let at_cm = from.pose.position_cm.lerp(to.pose.position_cm, share);
-    let pose = Pose::new(at_cm.x, at_cm.y, from.pose.heading_rad + share * turn_rad);
-    Frame { t_ms: from.t_ms + share * (to.t_ms - from.t_ms), pose }
+    Frame { t_ms: from.t_ms + share * (to.t_ms - from.t_ms), pose: from.pose.between(&to.pose, share) }
 }
 
 /// Returns the median interval of frames, ms; NaN with fewer than two.

@@ -45,8 +45,8 @@ fn recording(poses: impl Fn(Frame) -> Frame) -> Recording {
     let samples = (0..(LASTS_MS / 50.0) as usize).map(|i| 50.0 * i as f64);
     Recording {
         commands: Commands { kind: Kind::Twist, samples: samples.map(|ms| (ms, twist(ms))).collect() },
-        poses: path().into_iter().step_by(3).map(|frame| Some(poses(frame))).collect(),
-        track: PathBuf::from("track.csv"),
+        poses: path().into_iter().step_by(3).map(poses).collect(),
+        file: PathBuf::from("track.csv"),
         readings: Vec::new(),
         own_motion: OwnMotion::default(),
         has_one_clock: false,
@@ -157,12 +157,12 @@ fn mirrored_drive_is_mirrored_back_and_exchanged_wheels_are_shown_by_walls() {
         ..robot()
     };
     let centred = |pose: &Pose| Pose { position_cm: pose.position_cm + DVec2::new(1000.0, 1000.0), ..*pose };
-    exchanged.poses.iter_mut().flatten().for_each(|frame| frame.pose = centred(&frame.pose));
+    exchanged.poses.iter_mut().for_each(|frame| frame.pose = centred(&frame.pose));
     let reading = |frame: &Frame| {
         let hit = cast(&scene.sides(), frame.pose.position_cm, frame.pose.direction());
         (frame.t_ms, hit.map(|hit| hit.distance_cm))
     };
-    let samples = exchanged.poses.iter().flatten().map(reading).collect();
+    let samples = exchanged.poses.iter().map(reading).collect();
     exchanged.readings = vec![Readings { sensor: 0, samples, on_clock_of_poses: false }];
     let stated = Stated::default();
     let Assembled { report, .. } =
@@ -183,7 +183,7 @@ fn paused(stops_after_ms: f64) -> (Recording, usize) {
     recording.poses.clear();
     for i in 0..(LASTS_MS / 10.0) as usize {
         let t_ms = 10.0 * i as f64;
-        recording.poses.extend((i % 3 == 0).then_some(Some(Frame { t_ms, pose })));
+        recording.poses.extend((i % 3 == 0).then_some(Frame { t_ms, pose }));
         let last_ms =
             if is_paused(t_ms) { (t_ms / 6000.0).floor() * 6000.0 + 4000.0 } else { (t_ms / 50.0).floor() * 50.0 };
         if t_ms - last_ms <= stops_after_ms {
@@ -261,8 +261,8 @@ fn inconsistent_units_are_rejected_with_both_lengths() {
 fn streams_of_two_drives_are_rejected() {
     let mut other = recording(|frame| frame);
     other.poses.reverse();
-    let times: Vec<f64> = other.poses.iter().rev().flatten().map(|frame| frame.t_ms).collect();
-    other.poses.iter_mut().flatten().zip(times).for_each(|(frame, ms)| frame.t_ms = ms);
+    let times: Vec<f64> = other.poses.iter().rev().map(|frame| frame.t_ms).collect();
+    other.poses.iter_mut().zip(times).for_each(|(frame, ms)| frame.t_ms = ms);
     let error = assembled(other).err().expect("refused").to_string();
     assert!(error.contains("nothing in common"), "{error}");
     let mut apart = recording(|frame| Frame { t_ms: frame.t_ms + 1e6, ..frame });
@@ -305,16 +305,8 @@ fn readings_are_dropped_without_range_sensor() {
 #[test]
 fn long_tracker_pause_splits_runs() {
     let mut paused = recording(|frame| frame);
-    paused
-        .poses
-        .iter_mut()
-        .filter(|f| f.is_some_and(|f| (20_000.0..30_000.0).contains(&f.t_ms)))
-        .for_each(|f| *f = None);
-    paused
-        .poses
-        .iter_mut()
-        .filter(|f| f.is_some_and(|f| (40_000.0..41_000.0).contains(&f.t_ms)))
-        .for_each(|f| *f = None);
+    let is_lost = |ms: f64| (20_000.0..30_000.0).contains(&ms) || (40_000.0..41_000.0).contains(&ms);
+    paused.poses.retain(|frame| !is_lost(frame.t_ms));
     let Assembled { logs, report, .. } = assembled(paused).expect("logs");
     assert_eq!(logs.runs.iter().map(|run| run.name.as_str()).collect::<Vec<_>>(), ["run-000", "run-001"]);
     assert!((1..=3).contains(&report.recordings[0].without_pose), "{report:?}");

@@ -47,7 +47,7 @@ impl OneClock {
         let mut notes = Vec::new();
         let simulated = streams.iter().filter(|(_, stream)| stream.is_clock()).min_by_key(|(name, _)| *name);
         let simulated = simulated.and_then(|(name, stream)| Some((name.as_str(), Pairs::of(&stream.samples)?)));
-        let poses = stamped.iter().find(|(name, _)| *name == topics.poses);
+        let poses = stamped.iter().find(|(name, _)| topics.poses.as_deref() == Some(name));
         if stamped.iter().all(|(_, pairs)| near_log(pairs)) && (simulated.is_none() || poses.is_some()) {
             let clock =
                 if stamped.is_empty() { "from the times of logging" } else { "from the stamps in the messages" };

@@ -12,7 +12,8 @@ use mindgap_logs::range_sensor::RangeSensor;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Topics {
     pub commands: String,
-    pub poses: String,
+    /// Without one, the own motion shows how the robot moved.
+    pub poses: Option<String>,
     pub ranges: Ranges,
     pub own_motion: OwnStreams,
     /// The guesses made, one sentence each.
@@ -25,7 +26,8 @@ impl Topics {
     /// Selects topics among streams.
     ///
     /// # Errors
-    /// When a topic named by the user is missing, or commands or poses are missing or ambiguous.
+    /// When a topic named by the user is missing, or commands are missing or ambiguous, or so are poses and no own motion stands in
+    /// for them.
     pub fn choose(streams: &HashMap<String, Stream>, choice: &Choice, sensors: &[RangeSensor]) -> Result<Self, String> {
         let mut guessed = Vec::new();
         let mut choose = |role, named: &Option<String>, near: &str| -> Result<Option<String>, String> {
@@ -45,15 +47,20 @@ impl Topics {
             )
         };
         let commands = choose(Role::Commands, &choice.commands, "")?.ok_or_else(|| missing(Role::Commands))?;
-        let poses = choose(Role::Poses, &choice.poses, &commands)?.ok_or_else(|| missing(Role::Poses))?;
+        let poses = choose(Role::Poses, &choice.poses, &commands)?;
         let (ranges, how, mut unused) = ranges::choose(streams, choice, sensors, &commands)?;
         guessed.extend(how);
         let own_motion = own_motion::choose(streams, choice, &commands, &mut unused)?;
-        if streams[&poses].schema == "nav_msgs/msg/Odometry" {
-            guessed.push(format!("{poses} may be the robot's own odometry, which does not see wheel slip"));
+        if poses.is_none() && own_motion.all().next().is_none() {
+            return Err(missing(Role::Poses) + "; wheels of a JointState or a gyro would do as well");
         }
-        if let parts @ [_, ..] = streams[&poses].composed_of.as_slice() {
-            guessed.push(format!("{poses} is composed of {}", parts.join(" and ")));
+        if let Some(poses) = &poses {
+            if streams[poses].schema == "nav_msgs/msg/Odometry" {
+                guessed.push(format!("{poses} may be the robot's own odometry, which does not see wheel slip"));
+            }
+            if let parts @ [_, ..] = streams[poses].composed_of.as_slice() {
+                guessed.push(format!("{poses} is composed of {}", parts.join(" and ")));
+            }
         }
         Ok(Topics { commands, poses, ranges, own_motion, guessed, unused })
     }
@@ -61,6 +68,6 @@ impl Topics {
     /// Returns the names of all selected topics.
     pub fn all(&self) -> impl Iterator<Item = &str> {
         let ranges = self.ranges.iter().map(|(_, name)| name);
-        [&self.commands, &self.poses].into_iter().chain(ranges).chain(self.own_motion.all()).map(String::as_str)
+        [&self.commands].into_iter().chain(&self.poses).chain(ranges).chain(self.own_motion.all()).map(String::as_str)
     }
 }

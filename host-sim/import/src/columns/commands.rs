@@ -2,7 +2,7 @@
 
 use crate::column::Column;
 use crate::quantities::{Dimension, Quantity};
-use crate::recording::Kind;
+use crate::recording::{Commands, Kind};
 use crate::table::{Line, Table};
 use mindgap_foundations::error::{Error, Result};
 
@@ -23,6 +23,18 @@ pub struct CommandKind {
     pub factor: f64,
     /// The guess, if it was one.
     pub guessed: Option<String>,
+}
+
+impl CommandKind {
+    /// Returns the commands of rows with their times, ms; rows without a pair have none.
+    pub fn commands(
+        &self,
+        rows: impl Iterator<Item = (usize, f64)>,
+        pair: impl Fn(usize) -> Option<[f64; 2]>,
+    ) -> Commands {
+        let samples = rows.filter_map(|(row, ms)| Some((ms, pair(row)?.map(|number| number * self.factor))));
+        Commands { kind: self.kind, samples: samples.collect() }
+    }
 }
 
 impl CommandColumns {
@@ -59,7 +71,7 @@ impl CommandColumns {
     ///
     /// # Errors
     /// When motor commands exceed 100 and have no stated unit.
-    pub fn kind<'a>(&self, table: &Table, pairs: impl Iterator<Item = &'a [f64; 2]>) -> Result<CommandKind> {
+    pub fn kind(&self, table: &Table, pairs: impl Iterator<Item = [f64; 2]>) -> Result<CommandKind> {
         let exact = |kind| Ok(CommandKind { kind, factor: 1.0, guessed: None });
         let left = &self.columns[0];
         match left.unit.map(|unit| unit.dimension) {

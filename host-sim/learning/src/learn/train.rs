@@ -28,6 +28,8 @@ pub const TABLE_ONE: Shapes = Shapes {
 
 /// The networks, in the order in which they are trained.
 pub const NETWORKS: [&str; 5] = ["turn", "forward", "lateral", "echo_probability", "echo_value"];
+/// Number of networks of a further range sensor.
+pub const OF_A_SENSOR: usize = 2;
 /// One run in this many is held out of training to estimate the residuals.
 const HELD_OUT: usize = 5;
 /// Least number of samples to train a network.

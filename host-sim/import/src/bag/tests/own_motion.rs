@@ -50,6 +50,20 @@ fn wheels_of_a_side_are_averaged_and_other_joints_are_reported() {
 }
 
 #[test]
+fn a_bag_without_poses_needs_wheels_or_a_gyro() {
+    let without_poses = |more: Messages| {
+        let commands = straight().into_iter().filter(|(topic, ..)| *topic == "/cmd_vel");
+        read(&commands.chain(more).collect(), &Choice::default())
+    };
+    let joints = |s: f64| ("/joint_states", JOINTS, s, joints(s, &["left_wheel", "right_wheel"], &[s - 1000.0; 2]));
+    let counted = (0..100).map(|i| joints(1000.0 + 0.05 * f64::from(i)));
+    let recording = without_poses(counted.collect()).expect("a recording");
+    assert!(!recording.is_tracked() && recording.own_motion.has_counters() && recording.has_one_clock);
+    let refusal = without_poses(Vec::new()).expect_err("no motion").to_string();
+    assert!(refusal.contains("has no poses") && refusal.contains("wheels of a JointState or a gyro"), "{refusal}");
+}
+
+#[test]
 fn joints_with_unknown_names_are_chosen_by_the_user() {
     let names = ["joint_a", "joint_b"];
     let messages = with(|s| vec![("/state", JOINTS, s, joints(s, &names, &[s - 1000.0, 7.0 - s]))]);
