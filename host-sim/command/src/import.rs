@@ -110,7 +110,11 @@ impl Run for Import {
 impl Run for Brick {
     fn places(&self) -> Places {
         let inputs = self.files.iter().chain([&self.scene, &self.robot]);
-        Places::default().reading(inputs).filling([&self.out]).writing(&self.json, kinds::REPORT).writing(&self.html, kinds::PAGE)
+        Places::default()
+            .reading(inputs)
+            .filling([&self.out])
+            .writing(&self.json, kinds::REPORT)
+            .writing(&self.html, kinds::PAGE)
     }
 
     fn run(&self, _: &dyn Executor) -> Result<String> {

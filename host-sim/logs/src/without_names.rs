@@ -26,10 +26,8 @@ pub type Texts = Vec<(String, String)>;
 pub fn texts(folder: &Path, runs: &[Run]) -> Result<Texts> {
     let (robot, sensors) = Robot::read_all(&folder.join("robot.toml"))?;
     let scene = Scene::read(&folder.join("scene.toml"))?;
-    let mut texts = vec![
-        ("robot.toml".to_owned(), robot.to_text_with(&sensors)),
-        ("scene.toml".to_owned(), scene.to_text()),
-    ];
+    let mut texts =
+        vec![("robot.toml".to_owned(), robot.to_text_with(&sensors)), ("scene.toml".to_owned(), scene.to_text())];
     for (run, name) in runs.iter().zip(numbered(runs.len())) {
         let stem = run.name.rsplit('/').next().unwrap_or_default();
         let file = format!("{stem}.csv");

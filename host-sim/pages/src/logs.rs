@@ -37,19 +37,12 @@ pub fn page(subject: &Subject) -> String {
     let runs = Drawn::all(survey, logged, corrected);
     let mut sections: Vec<Section> = defects::section(survey, logged).into_iter().collect();
     sections.push(paths::section(&runs, corrected));
-    sections.push(over_time::section(&runs, &corrected.robot));
+    sections.push(over_time::section(&runs, corrected));
     sections.extend(readings::section(&runs, corrected));
     sections.push(contents::section(survey));
     sections.push(identified::section(survey));
-    Document {
-        kind: "Logs",
-        headline: &headline(survey),
-        subject: folder,
-        lead: lead(subject),
-        sections,
-        script: None,
-    }
-    .html()
+    Document { kind: "Logs", headline: &headline(survey), subject: folder, lead: lead(subject), sections, script: None }
+        .html()
 }
 
 /// Amount and soundness of the logs in one sentence.

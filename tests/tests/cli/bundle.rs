@@ -8,6 +8,8 @@ use mindgap_tests::command::Sandbox;
 use mindgap_tests::rooms::trained;
 use rawzip::ZipArchive;
 
+use super::schemas::is_described;
+
 /// A name in the names and texts of files, which must not be in a bundle.
 const NAME: &str = "annabot";
 
@@ -80,6 +82,7 @@ fn a_bundle_has_no_names_and_gives_the_same_answer_again() {
         sandbox.run(&format!("bundle {against} {folder} --out wrong.zip --seed 3"));
         let bundle = unpacked(&sandbox.bytes("wrong.zip"));
         assert_nameless(&bundle);
+        is_described(&bundle, "bundle", "mindgap-bundle.json");
         assert_eq!(bundle.files("").len(), files, "{against}");
         assert!(bundle.text("logs/run-007.csv").starts_with("t_ms,left,right,x_cm,y_cm,heading_deg,echo_cm"));
         assert_same_answer(&bundle);

@@ -67,9 +67,8 @@ fn steps(robot: &Robot, run: &Run, robots: &[Vec<Moment>; 2]) -> Vec<Step> {
     let step = |k: usize| {
         let [first_s, begin_s, end_s] = [0, k, k + 1].map(|k| run.rows.at(k).t_ms / 1000.0);
         let commanded = rates::commanded(robot, run.rows.at(k).command());
-        let driven = |moments: &Vec<Moment>| {
-            Some(rates::driven(&moments[k].pose?, &moments[k + 1].pose?, end_s - begin_s))
-        };
+        let driven =
+            |moments: &Vec<Moment>| Some(rates::driven(&moments[k].pose?, &moments[k + 1].pose?, end_s - begin_s));
         let [robot, simulator] = robots.each_ref().map(driven);
         Step { t_s: begin_s - first_s, rates: [Some(commanded), robot, simulator] }
     };

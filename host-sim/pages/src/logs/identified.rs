@@ -10,11 +10,11 @@ use mindgap_diagnosis::survey::Survey;
 use mindgap_foundations::statistics::rounding::three_digits;
 use mindgap_models::effects::CATALOGUE;
 
-const HEADER: [&str; 4] = ["effect", "id", "smallest departure that shows", "its usual strength shows"];
+const HEADER: [&str; 3] = ["effect", "smallest departure that shows", "its usual strength shows"];
 
 /// The section.
 pub fn section(survey: &Survey) -> Section {
-    let rows: Vec<[String; 4]> = survey.holds.detectable.iter().map(|of| row(of, survey)).collect();
+    let rows: Vec<[String; 3]> = survey.holds.detectable.iter().map(|of| row(of, survey)).collect();
     let body = html! {
         @if survey.missing_networks.is_empty() {
             p { "The logs suffice for all networks of a simulator." }
@@ -39,7 +39,7 @@ pub fn section(survey: &Survey) -> Section {
     Section { id: "identified", title: "What the logs can identify", body }
 }
 
-fn row(of: &Detectable, survey: &Survey) -> [String; 4] {
+fn row(of: &Detectable, survey: &Survey) -> [String; 3] {
     let smallest = of.smallest.map(|smallest| format!("{} by {}", of.parameter, three_digits(smallest)));
     let is_of_further = survey.holds.sensors.iter().any(|heard| Some(&heard.sensor) == of.sensor.as_ref());
     let usual = match survey.untestable.contains(&of.id) {
@@ -49,7 +49,6 @@ fn row(of: &Detectable, survey: &Survey) -> [String; 4] {
     };
     [
         of_sensor(words::name(of.id, CATALOGUE), of.sensor.as_deref()),
-        of.id.into(),
         smallest.unwrap_or_else(|| "none: not excited".into()),
         usual.into(),
     ]

@@ -1,4 +1,4 @@
-//! Commands and speeds over the time of a few runs.
+//! Commands, speeds and readings over the time of a few runs.
 
 use glam::DVec2;
 use maud::{Markup, html};
@@ -10,8 +10,8 @@ use crate::rates::{self, Rates};
 use crate::words;
 use mindgap_diagnosis::split;
 use mindgap_figures::report::curves::{Curve, CurveChart, Point};
-use mindgap_logs::samples::{LONGEST_STEP, wheels_cm};
-use mindgap_logs::{Logs, Robot, Run, Scene};
+use mindgap_logs::samples::{self, LONGEST_STEP, wheels_cm};
+use mindgap_logs::{Logs, Robot, Row, Run};
 
 /// Runs that are shown.
 const MOST_RUNS: usize = 4;
@@ -22,28 +22,28 @@ const MOST_POINTS: usize = 600;
 type Points = Vec<DVec2>;
 
 /// The section.
-pub fn section(runs: &[Drawn], robot: &Robot) -> Section {
+pub fn section(runs: &[Drawn], corrected: &Logs) -> Section {
     let shown = chosen(runs, MOST_RUNS);
-    let step_ms = split::step_ms(robot.step_ms);
+    let step_ms = split::step_ms(corrected.robot.step_ms);
     let body = html! {
         p {
             (how_many(shown.len(), runs.len()))
             " Commanded speeds are those that the commands ask for by the textbook, from the dimensions in robot.toml. Measured "
             "speeds are means over " (words::number(step_ms, 0)) " ms. Speeds are positive forwards and to the left."
         }
-        @for drawn in shown { (run(drawn, robot, step_ms)) }
+        @for drawn in shown { (run(drawn, corrected, step_ms)) }
     };
-    Section { id: "speeds", title: "Commands and speeds over time", body }
+    Section { id: "speeds", title: "Commands, speeds and readings over time", body }
 }
 
-fn run(drawn: &Drawn, robot: &Robot, step_ms: f64) -> Markup {
+fn run(drawn: &Drawn, corrected: &Logs, step_ms: f64) -> Markup {
+    let Logs { robot, scene, .. } = corrected;
     let run = drawn.run;
-    let coarse = Logs { robot: *robot, scene: Scene::default(), runs: vec![run.clone()] };
-    let coarse = if step_ms > robot.step_ms { coarse.resampled(step_ms) } else { coarse };
+    let own = Logs { robot: *robot, scene: scene.clone(), runs: vec![run.clone()] };
+    let coarse = if step_ms > robot.step_ms { own.resampled(step_ms) } else { own.clone() };
     let commands = commands(run);
-    let wheel = |wheel: usize| -> Points {
-        commands.iter().map(|(t_s, command)| DVec2::new(*t_s, command[wheel])).collect()
-    };
+    let wheel =
+        |wheel: usize| -> Points { commands.iter().map(|(t_s, command)| DVec2::new(*t_s, command[wheel])).collect() };
     let of_commands = vec![("left", wheel(0)), ("right", wheel(1))];
     let asked = |rate: usize| -> Points {
         commands.iter().map(|(t_s, command)| DVec2::new(*t_s, rates::commanded(robot, *command)[rate])).collect()
@@ -80,11 +80,23 @@ fn run(drawn: &Drawn, robot: &Robot, step_ms: f64) -> Markup {
             (draw("commands", "command (% of full speed)", of_commands))
             (draw("forward", "forward speed (cm/s)", forward))
             (draw("turn", "turn rate (degrees/s)", turn))
+            @if robot.ultrasonic.is_some() { (draw("reading", "reading (cm)", readings(&own))) }
         }
     }
 }
 
-/// Speeds of a run at the beginnings of its steps, in seconds since its first row.
+/// Readings of the first range sensor of a run, and the distances to what is straight ahead of it.
+fn readings(own: &Logs) -> Vec<(&'static str, Points)> {
+    let run = &own.runs[0];
+    let mut ahead_cm = vec![f64::NAN; run.rows.len()];
+    samples::readings(own).for_each(|sample| ahead_cm[sample.row] = sample.distance_cm);
+    let at = |row: &Row, cm: f64| DVec2::new(since_start_s(run, row.t_ms), cm);
+    let heard = run.rows.iter().map(|row| at(&row, row.echo_cm.unwrap_or(f64::NAN)));
+    let ahead = run.rows.iter().zip(ahead_cm).map(|(row, cm)| at(&row, cm));
+    vec![("reading", heard.collect()), ("distance to the wall", ahead.collect())]
+}
+
+/// Speeds of a run in the middle of its steps, in seconds since its first row.
 #[derive(Default)]
 struct Measured {
     tracked: Vec<(f64, Option<Rates>)>,
@@ -95,8 +107,9 @@ struct Measured {
 impl Measured {
     fn of(run: &Run, robot: &Robot) -> Self {
         let step_s = robot.step_ms / 1000.0;
-        let steps = || run.rows.pairs().enumerate().map(|(k, rows)| (k, since_start_s(run, rows[0].t_ms), rows));
-        let tracked = |(_, t_s, [from, to]): (usize, f64, [mindgap_logs::Row; 2])| {
+        let middle_s = |[from, to]: &[Row; 2]| since_start_s(run, 0.5 * (from.t_ms + to.t_ms));
+        let steps = || run.rows.pairs().enumerate().map(|(k, rows)| (k, middle_s(&rows), rows));
+        let tracked = |(_, t_s, [from, to]): (usize, f64, [Row; 2])| {
             let duration_s = (to.t_ms - from.t_ms) / 1000.0;
             let is_step = duration_s <= LONGEST_STEP * step_s;
             (t_s, from.pose.zip(to.pose).filter(|_| is_step).map(|(from, to)| rates::driven(&from, &to, duration_s)))
@@ -105,8 +118,13 @@ impl Measured {
             let cm_s = wheels_cm(robot, run, k).map(|wheels| wheels.map(|cm| cm / step_s));
             (t_s, cm_s.map(|cm_s| rates::of_wheels(robot, cm_s)))
         };
-        let gyro = run.rows.iter().map(|row| DVec2::new(since_start_s(run, row.t_ms), row.gyro_deg_s.unwrap_or(f64::NAN)));
-        Measured { tracked: steps().map(tracked).collect(), counters: steps().map(counters).collect(), gyro: gyro.collect() }
+        let gyro =
+            run.rows.iter().map(|row| DVec2::new(since_start_s(run, row.t_ms), row.gyro_deg_s.unwrap_or(f64::NAN)));
+        Measured {
+            tracked: steps().map(tracked).collect(),
+            counters: steps().map(counters).collect(),
+            gyro: gyro.collect(),
+        }
     }
 }
 
@@ -123,7 +141,7 @@ fn commands(run: &Run) -> Vec<(f64, [f64; 2])> {
     let end_ms = run.rows.at(run.rows.len() - 1).t_ms;
     let set: Vec<(f64, [f64; 2])> = match run.rows.changes() {
         Some(changes) => changes.before(end_ms).iter().map(|change| (change.t_ms, change.command)).collect(),
-        None => run.rows.iter().map(|row| (row.t_ms, row.command())).collect(),
+        None => run.rows.between(0..run.rows.len() - 1).map(|row| (row.t_ms, row.command())).collect(),
     };
     let ends = set.iter().skip(1).map(|(t_ms, _)| *t_ms).chain([end_ms]);
     let held = set.iter().zip(ends).flat_map(|((from_ms, command), to_ms)| [(*from_ms, *command), (to_ms, *command)]);

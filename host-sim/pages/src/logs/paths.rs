@@ -22,7 +22,8 @@ const MOST_MARKS: usize = 300;
 pub fn section(runs: &[Drawn], corrected: &Logs) -> Section {
     let places = || corrected.runs.iter().flat_map(|run| run.rows.iter().filter_map(|row| row.pose));
     if places().next().is_none() {
-        let body = html! { p { "The tracker never saw the robot in these logs, so there is nothing to show on a map." } };
+        let body =
+            html! { p { "The tracker never saw the robot in these logs, so there is nothing to show on a map." } };
         return Section { id: "paths", title: "Where the robot drove", body };
     }
     let shown = chosen(runs, MOST_RUNS);
@@ -57,7 +58,9 @@ pub fn how_many(shown: usize, all: usize) -> String {
     match (shown, all) {
         (1, 1) => "The only run.".into(),
         (shown, all) if shown == all => format!("All {all} runs."),
-        (shown, all) => format!("{shown} of {all} runs: some with defects, if there are any, the others evenly spread."),
+        (shown, all) => {
+            format!("{shown} of {all} runs: some with defects, if there are any, the others evenly spread.")
+        }
     }
 }
 

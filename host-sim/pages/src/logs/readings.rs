@@ -84,9 +84,8 @@ fn sensor(runs: &[Drawn], logs: &Logs) -> Markup {
         kinds: kinds(&|s| Some(DVec2::new(s.alpha_deg(), off(s)?))),
     };
     let heard = |is_heard: bool| shown.iter().filter(move |s| s.echo_cm.is_some() == is_heard);
-    let places = |is_heard: bool| -> Vec<DVec2> {
-        heard(is_heard).map(|s| DVec2::new(s.distance_cm, s.alpha_deg())).collect()
-    };
+    let places =
+        |is_heard: bool| -> Vec<DVec2> { heard(is_heard).map(|s| DVec2::new(s.distance_cm, s.alpha_deg())).collect() };
     let in_both = ScatterChart {
         x_name: "distance D to the wall (cm)".into(),
         y_name: "incidence angle α (degrees)".into(),

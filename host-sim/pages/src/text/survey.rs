@@ -40,11 +40,7 @@ pub fn text(survey: &Survey) -> String {
 
 /// Returns the amounts that logs hold.
 pub fn amounts(Holdings { runs, rows, steps, duration_s, .. }: &Holdings) -> String {
-    format!(
-        "{}, {rows} rows, {steps} steps with poses at both ends, {:.1} min",
-        count(*runs, "run"),
-        duration_s / 60.0
-    )
+    format!("{}, {rows} rows, {steps} steps with poses at both ends, {:.1} min", count(*runs, "run"), duration_s / 60.0)
 }
 
 /// Returns what logs hold, each with a word for what it is.
@@ -68,10 +64,7 @@ pub fn holdings(holds: &Holdings) -> Vec<(&'static str, String)> {
                 holds.longest_held_steps
             ),
         ),
-        (
-            "speeds",
-            format!("forward {} cm/s, turn rate {} deg/s", range(holds.forward_cm_s), range(holds.turn_deg_s)),
-        ),
+        ("speeds", format!("forward {} cm/s, turn rate {} deg/s", range(holds.forward_cm_s), range(holds.turn_deg_s))),
         ("sensor", sensor(holds)),
     ]
     .into_iter()
