@@ -1,6 +1,7 @@
-//! Procedures built on the other crates: the closed loop with a robot, fleets, the blind challenge, the demo.
+//! Procedures built on the other crates: the closed loop with a robot, fleets, bundles, the blind challenge, the demo.
 
 pub mod adapt;
+pub mod bundle;
 pub mod challenge;
 pub mod closed_loop;
 pub mod compare;

@@ -116,6 +116,13 @@ pub struct DiagnoseResults<'a> {
     pub driven: Option<&'a [DrivenScript]>,
 }
 
+impl<'a> DiagnoseResults<'a> {
+    /// Returns the results of a diagnosis alone.
+    pub fn of(diagnosis: &'a Diagnosis) -> Self {
+        DiagnoseResults { diagnosis, patches: None, not_patched: None, driven: None }
+    }
+}
+
 impl Run for Diagnose {
     fn places(&self) -> Places {
         let inputs = self.simulator_file().into_iter().chain(&self.logs).chain(&self.controller).chain(&self.effects);
@@ -171,7 +178,7 @@ impl Run for Diagnose {
         let said = series.as_ref().map(|ended| self.drive.text(ended));
         let (mut answered, driven) = match series {
             Some(ended) => (ended.answered, Some(ended.driven)),
-            None => (self.answered(&request, logs)?, None),
+            None => (answered(&request, logs)?, None),
         };
         between_sessions::compare(&request, &mut answered, &self.with_series(sessions)?)?;
         let Answered { findings: found, logs } = &answered;
@@ -235,18 +242,6 @@ impl Diagnose {
         Some(&self.sim).filter(|sim| sim.as_os_str() != KINEMATIC)
     }
 
-    /// Diagnoses logs and shows how far it is.
-    fn answered(&self, request: &Request, logs: Logs) -> Result<Answered> {
-        let bar = progress::shares();
-        let watch = |stage: Stage| {
-            progress::at(&bar, stage.share_before(), stage.words().into());
-            log::info!("{}", stage.words());
-        };
-        let answered = request.of(logs, watch);
-        bar.finish_and_clear();
-        answered
-    }
-
     /// Adds the runs that were driven as one more session, where the logs are of several.
     fn with_series(&self, mut sessions: Vec<Session>) -> Result<Vec<Session>> {
         if let Some(folder) = self.drive.folder().filter(|_| sessions.len() > 1) {
@@ -278,8 +273,20 @@ impl Diagnose {
     }
 }
 
+/// Diagnoses logs and shows how far it is.
+pub fn answered(request: &Request, logs: Logs) -> Result<Answered> {
+    let bar = progress::shares();
+    let watch = |stage: Stage| {
+        progress::at(&bar, stage.share_before(), stage.words().into());
+        log::info!("{}", stage.words());
+    };
+    let answered = request.of(logs, watch);
+    bar.finish_and_clear();
+    answered
+}
+
 /// Parses a positive length of time, ms.
-fn positive(text: &str) -> std::result::Result<f64, String> {
+pub fn positive(text: &str) -> std::result::Result<f64, String> {
     let ms: f64 = text.parse().map_err(|_| String::from("is not a number"))?;
     if ms.is_finite() && ms > 0.0 { Ok(ms) } else { Err("must be above zero".into()) }
 }

@@ -62,6 +62,7 @@ const WORK: &[Part] = &[
                 "mindgap compare simulator.mcap --real robot.mcap --robot robot.toml --html gap.html\n  mindgap compare \
                  simulator-logs --real robot-logs --patch robot.urdf=patched.urdf    writes the causes into a model file",
             ),
+            ("bundle", "mindgap bundle simulator.json logs --out wrong.zip"),
             ("explain", "mindgap explain payload"),
             ("challenge", "mindgap challenge --help"),
             ("serve", "mindgap serve --port 8000    for people who prefer a browser"),

@@ -11,7 +11,8 @@ use serde::Serialize;
 use super::choices::{ANGLES, LENGTHS, TIMES, one_of};
 use super::json_output::emit_sorted;
 use super::table::{self, count};
-use super::{Run, kinds, progress, warn};
+use super::{Run, check, kinds, progress, warn};
+use mindgap_files as files;
 use mindgap_files::places::Places;
 use mindgap_foundations::error::Result;
 use mindgap_foundations::executor::Executor;
@@ -70,6 +71,9 @@ struct Brick {
     /// Write the results as JSON (`-`: to standard output, instead of the text).
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
+    /// Write an HTML page of the logs, as `mindgap check --html` does.
+    #[arg(long, value_name = "FILE")]
+    html: Option<PathBuf>,
 }
 
 /// Results of `mindgap import` for brick logs and camera tracks.
@@ -106,7 +110,11 @@ impl Run for Import {
 impl Run for Brick {
     fn places(&self) -> Places {
         let inputs = self.files.iter().chain([&self.scene, &self.robot]);
-        Places::default().reading(inputs).filling([&self.out]).writing(&self.json, kinds::REPORT)
+        Places::default()
+            .reading(inputs)
+            .filling([&self.out])
+            .writing(&self.json, kinds::REPORT)
+            .writing(&self.html, kinds::PAGE)
     }
 
     fn run(&self, _: &dyn Executor) -> Result<String> {
@@ -117,7 +125,9 @@ impl Run for Brick {
         let imported = import(&self.files, &stated, robot, scene, warn, progress::counting(&bar));
         bar.finish_and_clear();
         let (logs, report) = imported?;
+        let page = self.html.as_ref().map(|path| (path, check::surveyed(logs.clone(), &self.out, &[]).1));
         logs.write(&self.out)?;
+        page.map_or(Ok(()), |(path, page)| files::write(path, page))?;
         let text = format!("{}{}: {}\n", describe(&report), self.out.display(), count(logs.runs.len(), "run"));
         let results = ImportResults { schema: SchemaNumber, report: &report };
         emit_sorted(self.json.as_deref(), &results, text)

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::de::IgnoredAny;
 
+use mindgap_applications::bundle::is_bundle;
 use mindgap_files::places::Kind;
 use mindgap_workers::checkpoint;
 
@@ -28,6 +29,8 @@ pub const FORM_ERRORS: Kind =
 /// A page for a browser.
 pub const PAGE: Kind =
     Kind { name: "a page", is_own: |content| text(content).contains(r#"<meta name="generator" content="mindgap">"#) };
+/// Logs with their diagnosis, to be sent.
+pub const BUNDLE: Kind = Kind { name: "a bundle", is_own: is_bundle };
 /// The formula of a diagnosis.
 pub const FORMULA: Kind = Kind { name: "a formula", is_own: |content| text(content).starts_with(FORMULA_SIGN) };
 /// First line of a formula's file. Effects without it were written by hand and are not replaced.

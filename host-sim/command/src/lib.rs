@@ -5,6 +5,7 @@
 
 mod adapt;
 mod brick;
+mod bundle;
 mod challenge;
 mod check;
 mod checkpoint_args;
@@ -81,6 +82,7 @@ struct Cli {
 enum Command {
     Adapt(adapt::Adapt),
     Brick(brick::Brick),
+    Bundle(bundle::Bundle),
     Challenge(challenge::Challenge),
     Check(check::Check),
     Compare(compare::Compare),
@@ -141,6 +143,7 @@ impl Command {
         match self {
             Command::Adapt(command) => command,
             Command::Brick(command) => command,
+            Command::Bundle(command) => command,
             Command::Challenge(command) => command,
             Command::Check(command) => command,
             Command::Compare(command) => command,
@@ -228,10 +231,19 @@ fn print(text: &str) -> Result<()> {
 
 /// Reads a folder of logs and reports its oddities as warnings.
 fn read_logs(folder: &Path) -> Result<Logs> {
-    let logs = Logs::read(folder, warn)?;
+    read_logs_noting(folder, |_| ())
+}
+
+/// Reads a folder of logs; `note` receives each warning too.
+fn read_logs_noting(folder: &Path, mut note: impl FnMut(String)) -> Result<Logs> {
+    let mut report = |warning: String| {
+        warn(warning.clone());
+        note(warning);
+    };
+    let logs = Logs::read(folder, &mut report)?;
     let (runs, rows, step_ms) = (logs.runs.len(), logs.rows(), logs.robot.step_ms);
     log::info!("{}: {runs} runs, {rows} rows, {step_ms} ms apart", folder.display());
-    draft::warning(folder)?.into_iter().for_each(warn);
+    draft::warning(folder)?.into_iter().for_each(report);
     Ok(logs)
 }
 

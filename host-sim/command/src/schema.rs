@@ -10,6 +10,7 @@ use schemars::{JsonSchema, SchemaGenerator};
 use serde_json::Value;
 
 use super::{Run, adapt, brick, compare, demo, diagnose, drive, evolve, export, import, info, record, train};
+use mindgap_applications::bundle::About;
 use mindgap_applications::challenge::score::Score;
 use mindgap_applications::closed_loop::state::State;
 use mindgap_applications::fleet::Fleet;
@@ -41,6 +42,7 @@ type Generate = fn(SchemaGenerator) -> schemars::Schema;
 const OUTPUTS: &[(&str, Generate)] = &[
     ("adapt", of::<adapt::AdaptResults>),
     ("brick", of::<brick::results::BrickResults>),
+    ("bundle", of::<About>),
     ("challenge-score", of::<Score>),
     ("check", of::<Survey>),
     ("compare", of::<compare::CompareResults>),

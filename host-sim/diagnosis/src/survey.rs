@@ -46,27 +46,33 @@ pub struct Survey {
 impl Survey {
     /// Surveys logs.
     pub fn of(logs: Logs) -> Self {
+        Survey::with_logs(logs).0
+    }
+
+    /// Surveys logs, and returns them with what can be corrected corrected.
+    pub fn with_logs(logs: Logs) -> (Self, Logs) {
         let heard = if logs.sensors().are_several() { logs.by_sensor() } else { Vec::new() };
-        let mut survey = Survey::of_first(logs);
+        let inspected = Inspection::new(logs);
+        let mut survey = Survey::of_first(&inspected);
         if let Some(first) = heard.first() {
             further::name_first(&mut survey, &first.sensor);
         }
         heard.into_iter().skip(1).for_each(|heard| further::add(&mut survey, heard));
-        survey
+        (survey, inspected.logs)
     }
 
     /// Surveys logs as the first range sensor heard them.
-    fn of_first(logs: Logs) -> Self {
-        let mut inspected = Inspection::new(logs);
+    fn of_first(inspected: &Inspection) -> Self {
         let refused = inspected.refusal().map(str::to_owned);
         let enough = enough_of(&inspected.logs);
         let missing_networks = train::unsupported(&enough);
         let coarse = in_steps_that_motion_shows_in(&inspected.logs);
         let mut holds = Holdings::of(&inspected.logs, coarse.as_ref().unwrap_or(&inspected.logs));
         let mut drive_more = advice::advice(&inspected.logs, &holds);
-        inspected.logs = coarse.map_or(enough, |coarse| enough_of(&coarse));
+        let findings = inspected.findings.clone();
+        let sample = Inspection { logs: coarse.map_or(enough, |coarse| enough_of(&coarse)), findings };
         let untestable;
-        (untestable, holds.detectable) = match shown(&inspected) {
+        (untestable, holds.detectable) = match shown(&sample) {
             Ok(Prospect { untestable, detectable, notes }) => {
                 drive_more.extend(notes);
                 (untestable, detectable)
@@ -76,7 +82,7 @@ impl Survey {
                 (CATALOGUE.iter().map(|effect| effect.id).collect(), Vec::new())
             }
         };
-        let findings = inspected.findings;
+        let findings = sample.findings;
         Survey { schema: SchemaNumber, holds, findings, refused, missing_networks, untestable, drive_more }
     }
 }

@@ -22,6 +22,7 @@ pub mod sessions;
 pub mod tables;
 mod termination;
 mod ultrasonic;
+pub mod without_names;
 pub mod world_script;
 
 use std::path::Path;

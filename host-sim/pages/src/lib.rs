@@ -8,6 +8,7 @@ pub mod demo;
 pub mod diagnosis;
 pub mod evaluation;
 pub mod fleet;
+pub mod logs;
 pub mod simulation;
 pub mod text;
 pub mod trials;
@@ -15,4 +16,7 @@ pub mod words;
 
 mod document;
 mod glossary;
+#[cfg(test)]
+mod made_up;
+mod rates;
 mod replay;

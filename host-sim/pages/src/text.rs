@@ -5,4 +5,4 @@ mod diagnosis;
 mod survey;
 
 pub use diagnosis::text as diagnosis;
-pub use survey::text as survey;
+pub use survey::{amounts, holdings, text as survey};

@@ -4,6 +4,7 @@
 
 mod bad_input;
 mod brick;
+mod bundle;
 mod challenge;
 mod check;
 mod commands;

@@ -6,6 +6,7 @@
 
 mod diagnosis;
 mod fleet;
+mod logs;
 mod others;
 mod trials;
 mod visit;

@@ -8,7 +8,8 @@ use serde::Serialize;
 
 use crate::choices::{ANGLES, LENGTHS, TIMES, one_of};
 use crate::json_output::JsonOption;
-use crate::{Run, kinds, progress, table};
+use crate::{Run, check, kinds, progress, table};
+use mindgap_files as files;
 use mindgap_files::places::Places;
 use mindgap_foundations::error::Result;
 use mindgap_foundations::executor::Executor;
@@ -115,6 +116,9 @@ struct Target {
     watchdog_ms: Option<Watchdog>,
     #[command(flatten)]
     json: JsonOption,
+    /// Write an HTML page of the logs, as `mindgap check --html` does.
+    #[arg(long, value_name = "FILE")]
+    html: Option<PathBuf>,
 }
 
 fn watchdog(text: &str) -> std::result::Result<Watchdog, String> {
@@ -175,7 +179,8 @@ impl Bag {
 impl Target {
     fn places(&self) -> Places {
         let given = self.robot.iter().chain(&self.scene);
-        Places::default().reading(given).filling([&self.out]).writing(self.json.path(), kinds::REPORT)
+        let places = Places::default().reading(given).filling([&self.out]);
+        places.writing(self.json.path(), kinds::REPORT).writing(&self.html, kinds::PAGE)
     }
 
     /// Reads the robot and scene files that are given.
@@ -196,11 +201,18 @@ impl Target {
         let stated = Stated { offset_ms, watchdog: self.watchdog_ms };
         let Imported { logs, files, report } = given.import(recordings, stated, aligning)?;
         bar.finish_and_clear();
+        let page = self.html.as_ref().map(|path| (path, check::surveyed(logs.clone(), &self.out, &notes(&report)).1));
         files.write(&self.out)?;
+        page.map_or(Ok(()), |(path, page)| files::write(path, page))?;
         let text = describe(&report, logs.robot.step_ms, &self.out);
         let results = RecordingsResults { schema: SchemaNumber, report: &report };
         self.json.emit_sorted(&results, text)
     }
+}
+
+/// Returns what is still to be filled in, as a page of the logs has it.
+fn notes(report: &RecordingsReport) -> Vec<String> {
+    report.to_fill_in.iter().map(|line| format!("To fill in: {line}")).collect()
 }
 
 fn describe(report: &RecordingsReport, step_ms: f64, out: &Path) -> String {

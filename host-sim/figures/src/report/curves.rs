@@ -9,8 +9,8 @@ use super::chart::{ABOVE_PX, BELOW_PX, Plane, no_data};
 use super::figure::Figure;
 use super::glyph::mark;
 use super::legend::{self, Entry};
-use super::style::{BLUE, Colour, GREEN, GREY, INK, SMALL_PX, Text, VERMILION, number};
-use super::svg::Svg;
+use super::style::{BLUE, Colour, GREEN, GREY, INK, SMALL_PX, SOLID, Text, VERMILION, number};
+use super::svg::{Area, Svg};
 
 const PLOT_PX: f64 = 190.0;
 /// Room above the plane for remarks.
@@ -18,6 +18,8 @@ const REMARK_PX: f64 = 16.0;
 /// Margin beyond the outermost points, as a share of their span.
 const ROOM: f64 = 0.06;
 const MOST_TICKS: usize = 6;
+/// A band is at least as wide, px.
+const LEAST_BAND_PX: f64 = 2.0;
 /// Colours of the curves, repeated if there are more.
 const COLOURS: [Colour; 3] = [BLUE, VERMILION, GREEN];
 
@@ -40,6 +42,12 @@ pub struct CurveChart {
     pub apart: bool,
     /// Words above the chart at places along it.
     pub remarks: Vec<(f64, String)>,
+    /// Whether curves are lines without marks, for many points. A point that is not finite then breaks its line.
+    pub dense: bool,
+    /// Ranges along the chart with a grey ground, and what is read there under the pointer.
+    pub bands: Vec<(Range<f64>, String)>,
+    /// What the bands are, in the legend.
+    pub bands_name: String,
 }
 
 /// One curve.
@@ -74,20 +82,7 @@ impl Point {
 impl CurveChart {
     /// Draws the curves. Points that are not finite are left out.
     pub fn draw(&self) -> Figure {
-        let entries: Vec<Entry> = self
-            .curves
-            .iter()
-            .enumerate()
-            .map(|(kind, curve)| {
-                let (colour, joined) = (COLOURS[kind % COLOURS.len()], !self.apart);
-                Entry::new(curve.name.clone(), move |svg, at| {
-                    if joined {
-                        svg.line(&legend::stroke(at), colour.line(1.75));
-                    }
-                    mark(svg, at, kind, colour);
-                })
-            })
-            .collect();
+        let entries = self.entries();
         let above_px = ABOVE_PX + if self.remarks.is_empty() { 0.0 } else { REMARK_PX };
         Figure::chart(&self.title, above_px + PLOT_PX + BELOW_PX, &entries, |svg, space| {
             let points = || self.curves.iter().flat_map(|curve| &curve.points).filter(|p| p.is_drawable());
@@ -104,6 +99,7 @@ impl CurveChart {
             };
             let space = space.without([0.0, above_px - ABOVE_PX, 0.0, 0.0]);
             let plane = Plane::new(space, x.clone(), Axis::rounded(self.y_name.as_str(), y_range, 4));
+            self.draw_bands(svg, &plane);
             plane.draw_axes(svg);
             let zero = [plane.place(x.range.start, 0.0), plane.place(x.range.end, 0.0)];
             svg.line(&zero, GREY.line(1.0));
@@ -117,8 +113,43 @@ impl CurveChart {
         })
     }
 
+    fn entries(&self) -> Vec<Entry> {
+        let curve = |(kind, curve): (usize, &Curve)| {
+            let (colour, joined, marked) = (COLOURS[kind % COLOURS.len()], !self.apart, !self.dense);
+            Entry::new(curve.name.clone(), move |svg, at| {
+                if joined {
+                    svg.line(&legend::stroke(at), colour.line(1.75));
+                }
+                if marked {
+                    mark(svg, at, kind, colour);
+                }
+            })
+        };
+        let bands = (!self.bands.is_empty()).then(|| {
+            Entry::new(self.bands_name.clone(), |svg, at| {
+                svg.rect(Area { left: at.x - 7.0, top: at.y - 6.0, width: 14.0, height: 12.0 }, SOLID.fill());
+            })
+        });
+        self.curves.iter().enumerate().map(curve).chain(bands).collect()
+    }
+
+    fn draw_bands(&self, svg: &mut Svg, plane: &Plane) {
+        for (along, title) in &self.bands {
+            let (from, to) = (plane.place(along.start, 0.0).x, plane.place(along.end, 0.0).x);
+            let width = (to - from).max(LEAST_BAND_PX);
+            svg.titled(title, |svg| svg.rect(Area { left: from, width, ..plane.area }, SOLID.fill()));
+        }
+    }
+
     fn draw_curve(&self, svg: &mut Svg, plane: &Plane, kind: usize, curve: &Curve) {
         let colour = COLOURS[kind % COLOURS.len()];
+        if self.dense {
+            for piece in curve.points.split(|point| !point.is_drawable()) {
+                let places: Vec<DVec2> = piece.iter().map(|point| plane.place(point.at.x, point.at.y)).collect();
+                svg.line(&places, colour.line(1.25).opacity(0.85));
+            }
+            return;
+        }
         // Half of the curves are to the left, half to the right.
         let aside = if self.apart { 4.5 * (2.0 * kind as f64 + 1.0 - self.curves.len() as f64) } else { 0.0 };
         let place = |x: f64, y: f64| plane.place(x, y) + DVec2::X * aside;

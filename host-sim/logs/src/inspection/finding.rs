@@ -46,7 +46,7 @@ pub enum Handling {
 
 impl Handling {
     /// Returns the word for people.
-    fn word(self) -> &'static str {
+    pub fn word(self) -> &'static str {
         match self {
             Handling::Excluded => "excluded",
             Handling::Corrected => "corrected",
@@ -82,7 +82,7 @@ impl RunRows {
     }
 
     /// Returns the line numbers in the run's file as ranges; the header is line 1.
-    fn lines(&self) -> Vec<[usize; 2]> {
+    pub fn lines(&self) -> Vec<[usize; 2]> {
         let ranges = self.rows.chunk_by(|a, b| a + 1 == *b);
         ranges.map(|range| [range[0] + 2, range[range.len() - 1] + 2]).collect()
     }

@@ -4,17 +4,14 @@ use maud::html;
 
 use super::Subject;
 use crate::document::{Section, chart, table};
+use crate::rates::{self, Rates};
 use crate::words;
 use mindgap_figures::report::curves::{Curve, CurveChart, Point};
-use mindgap_foundations::motion::Motion;
 use mindgap_learning::evaluation::replay::{Moment, PUT_BACK_STEPS, Player};
 use mindgap_logs::{Robot, Run};
 
 /// Runs among which the one with the largest differences is shown; more would only take longer.
 const MOST_RUNS: usize = 40;
-
-/// Forward speed in cm/s and turn rate in degrees/s.
-type Rates = [f64; 2];
 
 /// The curves, in the order of [`Step::rates`].
 const CURVES: [&str; 3] = ["commanded", "the robot", "the simulator"];
@@ -69,12 +66,9 @@ const HEADER: [&str; 7] = [
 fn steps(robot: &Robot, run: &Run, robots: &[Vec<Moment>; 2]) -> Vec<Step> {
     let step = |k: usize| {
         let [first_s, begin_s, end_s] = [0, k, k + 1].map(|k| run.rows.at(k).t_ms / 1000.0);
-        let [left, right] = run.rows.at(k).command().map(|command| command / 100.0 * robot.full_speed_cm_s);
-        let commanded = [0.5 * (left + right), ((right - left) / robot.track_cm).to_degrees()];
-        let driven = |moments: &Vec<Moment>| {
-            let motion = Motion::between(&moments[k].pose?, &moments[k + 1].pose?).turn_in_degrees();
-            Some([motion.forward, motion.turn].map(|change| change / (end_s - begin_s)))
-        };
+        let commanded = rates::commanded(robot, run.rows.at(k).command());
+        let driven =
+            |moments: &Vec<Moment>| Some(rates::driven(&moments[k].pose?, &moments[k + 1].pose?, end_s - begin_s));
         let [robot, simulator] = robots.each_ref().map(driven);
         Step { t_s: begin_s - first_s, rates: [Some(commanded), robot, simulator] }
     };

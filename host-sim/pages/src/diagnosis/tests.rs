@@ -3,7 +3,7 @@
 use serde_json::json;
 
 use super::*;
-use mindgap_built_in_robot::default_robot;
+use crate::made_up::{EVIL, logs};
 use mindgap_diagnosis::account::{ChannelReduction, GapReduction, Reduction, RunnerUp};
 use mindgap_diagnosis::budget::SCATTER;
 use mindgap_diagnosis::channel::Channel;
@@ -17,24 +17,13 @@ use mindgap_diagnosis::formula::Statement;
 use mindgap_diagnosis::outliers::Outliers;
 use mindgap_diagnosis::scope::{NotCompared, Scope};
 use mindgap_diagnosis::verdict::NamedEffect;
-use mindgap_foundations::geometry::Pose;
 use mindgap_foundations::schema_number::SchemaNumber;
 use mindgap_learning::evaluation::paths::PathError;
 use mindgap_logs::inspection::{Finding, Handling, Part as Inspected};
-use mindgap_logs::{Row, Run, Scene};
 use mindgap_models::simulator::kinematic;
-
-const EVIL: &str = "<x-mark onload=\"evil\">&'</script><!--";
 
 static EVIL_EFFECT: Effect =
     Effect { id: EVIL, name: EVIL, what: EVIL, check: EVIL, place: None, needs_known_robot: false, variants: &[] };
-
-fn logs(runs: usize, rows: usize, name: &str) -> Logs {
-    let pose = |k: usize| Pose::new(30.0 + k as f64, 40.0, 0.0);
-    let row = |k: usize| Row { t_ms: 400.0 * k as f64, left: 10.0, pose: Some(pose(k)), ..Row::default() };
-    let run = |i: usize| Run { name: format!("{name}{i}"), rows: (0..rows).map(row).collect() };
-    Logs { robot: default_robot(), scene: Scene::default(), runs: (0..runs).map(run).collect() }
-}
 
 fn no_gap() -> Findings {
     let diagnosis = Diagnosis {

@@ -6,7 +6,8 @@ use mindgap_diagnosis::survey::{Heard, Holdings, Range, Survey, Witness};
 
 /// Returns a survey as text for one screen.
 pub fn text(survey: &Survey) -> String {
-    let mut lines = holdings(&survey.holds);
+    let mut lines = vec![amounts(&survey.holds)];
+    lines.extend(holdings(&survey.holds).into_iter().map(|(what, text)| format!("  {what:<9} {text}")));
     if survey.findings.is_empty() {
         lines.push("No defects found.".into());
     } else {
@@ -37,50 +38,53 @@ pub fn text(survey: &Survey) -> String {
     lines.join("\n") + "\n"
 }
 
-fn holdings(holds: &Holdings) -> Vec<String> {
-    let Holdings { runs, rows, steps, duration_s, step_ms, jitter_ms, .. } = holds;
+/// Returns the amounts that logs hold.
+pub fn amounts(Holdings { runs, rows, steps, duration_s, .. }: &Holdings) -> String {
+    format!("{}, {rows} rows, {steps} steps with poses at both ends, {:.1} min", count(*runs, "run"), duration_s / 60.0)
+}
+
+/// Returns what logs hold, each with a word for what it is.
+pub fn holdings(holds: &Holdings) -> Vec<(&'static str, String)> {
+    let Holdings { step_ms, jitter_ms, .. } = holds;
     let percent = |share: f64| format!("{:.0} %", 100.0 * share);
     vec![
-        format!(
-            "{}, {rows} rows, {steps} steps with poses at both ends, {:.1} min",
-            count(*runs, "run"),
-            duration_s / 60.0
+        ("rows", format!("{step_ms:.0} ms apart, 95 % of them within {jitter_ms:.0} ms")),
+        (
+            "coverage",
+            format!("{} of rows have a pose, {} a reading", percent(holds.with_pose), percent(holds.with_reading)),
         ),
-        format!("  rows      {step_ms:.0} ms apart, 95 % of them within {jitter_ms:.0} ms"),
-        format!(
-            "  coverage  {} of rows have a pose, {} a reading",
-            percent(holds.with_pose),
-            percent(holds.with_reading)
+        (
+            "commands",
+            format!(
+                "left {}, right {}; {} of all pairs covered; held for {:.0} steps (median), at most {}",
+                range(holds.left),
+                range(holds.right),
+                percent(holds.command_coverage),
+                holds.held_steps,
+                holds.longest_held_steps
+            ),
         ),
-        format!(
-            "  commands  left {}, right {}; {} of all pairs covered; held for {:.0} steps (median), at most {}",
-            range(holds.left),
-            range(holds.right),
-            percent(holds.command_coverage),
-            holds.held_steps,
-            holds.longest_held_steps
-        ),
-        format!("  speeds    forward {} cm/s, turn rate {} deg/s", range(holds.forward_cm_s), range(holds.turn_deg_s)),
-        sensor(holds),
+        ("speeds", format!("forward {} cm/s, turn rate {} deg/s", range(holds.forward_cm_s), range(holds.turn_deg_s))),
+        ("sensor", sensor(holds)),
     ]
     .into_iter()
-    .chain(holds.sensors.iter().map(further))
-    .chain(holds.witnesses.iter().filter(|witness| witness.rows > 0.0).map(witness))
+    .chain(holds.sensors.iter().map(|heard| ("sensor", further(heard))))
+    .chain(holds.witnesses.iter().filter(|witness| witness.rows > 0.0).map(|of| ("witness", witness(of))))
     .collect()
 }
 
 fn witness(Witness { columns, rows, adds }: &Witness) -> String {
-    format!("  witness   {:.0} % of rows have {columns}: {adds}", 100.0 * rows)
+    format!("{:.0} % of rows have {columns}: {adds}", 100.0 * rows)
 }
 
 /// Returns what a further range sensor measures.
 fn further(heard: &Heard) -> String {
     let Heard { sensor, reading_cm, distance_cm, alpha_deg, sensor_coverage, .. } = heard;
     if reading_cm.is_none() {
-        return format!("  sensor    {sensor}: no readings");
+        return format!("{sensor}: no readings");
     }
     format!(
-        "  sensor    {sensor}: reads {} cm; D {} cm, alpha {} deg: {:.0} % of the possible (D, alpha) covered",
+        "{sensor}: reads {} cm; D {} cm, alpha {} deg: {:.0} % of the possible (D, alpha) covered",
         range(*reading_cm),
         range(*distance_cm),
         range(*alpha_deg),
@@ -90,10 +94,10 @@ fn further(heard: &Heard) -> String {
 
 fn sensor(holds: &Holdings) -> String {
     if holds.reading_cm.is_none() && holds.distance_cm.is_none() {
-        return "  sensor    no readings, and no wall in view".into();
+        return "no readings, and no wall in view".into();
     }
     format!(
-        "  sensor    reads {} cm; distance D {} cm, incidence angle alpha {} deg: {:.0} % of the possible (D, alpha) covered",
+        "reads {} cm; distance D {} cm, incidence angle alpha {} deg: {:.0} % of the possible (D, alpha) covered",
         range(holds.reading_cm),
         range(holds.distance_cm),
         range(holds.alpha_deg),
