@@ -1,8 +1,8 @@
 //! Conversions between Python's values and the library's.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-use mindgap_foundations::error::Result;
+use mindgap_files as files;
 use mindgap_logs::tables::Table;
 use mindgap_logs::{Robot, Scene};
 use pyo3::buffer::PyBuffer;
@@ -26,12 +26,14 @@ pub fn frame<'py>(py: Python<'py>, rows: &impl Serialize) -> PyResult<Bound<'py,
 
 /// Reads a robot from a path of robot.toml or a dict with its contents.
 pub fn robot(from: &Bound<PyAny>) -> PyResult<Robot> {
-    from_toml(from, "robot", Robot::read, Robot::parse)
+    let (path, text) = text(from, "robot")?;
+    Robot::parse(&path, &text).map_err(raised)
 }
 
 /// Reads a scene from a path of scene.toml or a dict with its contents.
 pub fn scene(from: &Bound<PyAny>) -> PyResult<Scene> {
-    from_toml(from, "scene", Scene::read, Scene::parse)
+    let (path, text) = text(from, "scene")?;
+    Scene::parse(&path, &text).map_err(raised)
 }
 
 /// Returns a scene as a dict.
@@ -40,22 +42,18 @@ pub fn scene_facts<'py>(py: Python<'py>, scene: &Scene) -> PyResult<Bound<'py, P
     facts(py, &tables)
 }
 
-fn from_toml<T>(
-    from: &Bound<PyAny>,
-    name: &str,
-    read: fn(&Path) -> Result<T>,
-    parse: fn(&Path, &str) -> Result<T>,
-) -> PyResult<T> {
+/// Returns the text of `NAME.toml`, and its path for messages, from a path of it or a dict with its contents.
+pub fn text(from: &Bound<PyAny>, name: &str) -> PyResult<(PathBuf, String)> {
     if let Ok(path) = from.extract::<PathBuf>() {
-        return read(&path).map_err(raised);
+        let text = files::read_text(&path).map_err(raised)?;
+        return Ok((path, text));
     }
     let form = |e: String| {
         PyTypeError::new_err(format!("{name}: expected a path of {name}.toml or a dict with its contents: {e}"))
     };
     let text: String = from.py().import("json")?.call_method1("dumps", (from,))?.extract()?;
     let tables: toml::Table = serde_json::from_str(&text).map_err(|e| form(e.to_string()))?;
-    let text = toml::to_string(&tables).map_err(|e| form(e.to_string()))?;
-    parse(Path::new(name), &text).map_err(raised)
+    Ok((name.into(), toml::to_string(&tables).map_err(|e| form(e.to_string()))?))
 }
 
 /// Reads runs from one frame with a column `run`, or from a mapping from run names to tables.

@@ -87,21 +87,7 @@ impl Diagnosis {
 
     /// Returns the page of `mindgap diagnose --html`.
     fn page(&self, py: Python<'_>) -> PyResult<Page> {
-        Page::made(py.detach(|| {
-            let Answered { findings, logs } = &self.answered;
-            let written = files::days_written(self.folder.as_slice())?;
-            let [simulator, name] = self.names.clone();
-            let source = Source { simulator, logs: name, written, seed: self.method.seed };
-            let baseline = self.request().baseline(logs)?;
-            page(&Subject {
-                findings,
-                logs,
-                baseline: &baseline,
-                catalogue: self.method.catalogue,
-                source,
-                comparison: Comparison::default(),
-            })
-        }))
+        self.page_with(py, Comparison::default())
     }
 
     /// Returns the figures of `mindgap diagnose --figures`.
@@ -133,7 +119,35 @@ impl Diagnosis {
 }
 
 impl Diagnosis {
-    fn diagnosis(&self) -> &gap::Diagnosis {
+    /// Diagnoses logs with a simulator, or the textbook's, which has this name in pages.
+    pub fn of(
+        py: Python<'_>,
+        (simulator, name): (Option<Arc<simulator::Simulator>>, String),
+        logs: &Logs,
+        controller: Option<&mindgap_core::controller::Controller>,
+        method: Method,
+        step_ms: Option<f64>,
+    ) -> PyResult<Self> {
+        let request = Request { simulator: simulator.as_deref(), controller, method, step_ms };
+        let read = (*logs.inner).clone();
+        let answered = interruptible(py, |interrupt| request.of(read, |_| interrupt.check()))?.map_err(raised)?;
+        Ok(Diagnosis { answered, simulator, method, names: [name, logs.name()], folder: logs.folder.clone() })
+    }
+
+    /// Returns the page, with a comparison.
+    pub fn page_with(&self, py: Python<'_>, comparison: Comparison) -> PyResult<Page> {
+        Page::made(py.detach(|| {
+            let Answered { findings, logs } = &self.answered;
+            let written = files::days_written(self.folder.as_slice())?;
+            let [simulator, name] = self.names.clone();
+            let source = Source { simulator, logs: name, written, seed: self.method.seed };
+            let (baseline, catalogue) = (&self.request().baseline(logs)?, self.method.catalogue);
+            page(&Subject { findings, logs, baseline, catalogue, source, comparison })
+        }))
+    }
+
+    /// Returns what was found.
+    pub fn diagnosis(&self) -> &gap::Diagnosis {
         &self.answered.findings.diagnosis
     }
 
@@ -161,15 +175,7 @@ pub fn diagnose(
         controller.check_for(&simulator.robot).map_err(raised)?;
     }
     let method = Method { catalogue: own::beside_built_in(&effects).map_err(raised)?, seed, ..Method::default() };
-    let request = Request {
-        simulator: simulator.as_deref(),
-        controller: controller.map(|file| &file.controller),
-        method,
-        step_ms,
-    };
-    let read = (*logs.inner).clone();
-    let answered = interruptible(py, |interrupt| request.of(read, |_| interrupt.check()))?.map_err(raised)?;
-    Ok(Diagnosis { answered, simulator, method, names: [name, logs.name()], folder: logs.folder.clone() })
+    Diagnosis::of(py, (simulator, name), logs, controller.map(|file| &file.controller), method, step_ms)
 }
 
 /// Returns a simulator, or `None` for the textbook's, and its name in pages.

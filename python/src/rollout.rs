@@ -1,15 +1,11 @@
 //! A simulated robot under a controller that is written in Python.
 
-use mindgap_foundations::random::{Generator, generator};
-use mindgap_models::simulator::Noise;
-use mindgap_models::simulator::body::SimulatedBody;
-use mindgap_models::simulator::environment::Environment;
 use pyo3::prelude::*;
 use pyo3::types::IntoPyDict;
 use serde::Serialize;
 
 use crate::convert;
-use crate::error::{Error, raised};
+use crate::simulated_robot::SimulatedRobot;
 use crate::simulator::Simulator;
 
 /// A row of the frame, as in a run of logs.
@@ -18,13 +14,6 @@ struct Row {
     t_ms: f64,
     left: f64,
     right: f64,
-    #[serde(flatten)]
-    seen: Seen,
-}
-
-/// What the controller sees.
-#[derive(Clone, Copy, Serialize)]
-struct Seen {
     x_cm: f64,
     y_cm: f64,
     heading_deg: f64,
@@ -43,38 +32,26 @@ pub fn rollout<'py>(
     steps: u32,
     seed: u64,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let scene = convert::scene(scene)?;
-    let robot = simulator.inner.robot;
-    let pose = scene.start(start, robot.body_radius_cm).map_err(raised)?;
-    let environment = Environment::new(&simulator.inner, &scene, pose, Noise::Learned).map_err(raised)?;
-    let rng = &mut generator(seed, &[]);
-    let mut body = SimulatedBody::at_rest(&environment, &scene);
+    let mut robot = SimulatedRobot::at(simulator, convert::scene(scene)?, start, seed)?;
     let mut rows = Vec::new();
-    for step in 0..steps {
-        let (t_ms, seen) = (f64::from(step) * robot.step_ms, look(&mut body, rng));
-        let observation = convert::facts(py, &seen)?;
-        observation.set_item("t_ms", t_ms)?;
-        let (left, right) = controller.call1((observation,))?.extract::<(f64, f64)>()?;
-        if ![left, right].iter().all(|command| (-100.0..=100.0).contains(command)) {
-            let problem = format!("step {step}: commands {left} and {right}: both must lie in -100..100");
-            return Err(Error::new_err(problem));
-        }
-        rows.push(Row { t_ms, left, right, seen });
-        body.drive([left, right], robot.step_ms, rng);
-        if body.crashed() {
+    for _ in 0..steps {
+        let (left, right) = controller.call1((robot.seen(py)?,))?.extract::<(f64, f64)>()?;
+        rows.push(Row::of(&robot, [left, right]));
+        robot.drive(py, left, right)?;
+        if robot.crashed() {
             break;
         }
     }
-    let t_ms = rows.len() as f64 * robot.step_ms;
-    rows.push(Row { t_ms, left: 0.0, right: 0.0, seen: look(&mut body, rng) });
+    rows.push(Row::of(&robot, [0.0, 0.0]));
     let frame = convert::frame(py, &rows)?;
-    let attributes = [("crashed", body.crashed())].into_py_dict(py)?;
+    let attributes = [("crashed", robot.crashed())].into_py_dict(py)?;
     frame.getattr("attrs")?.call_method1("update", (attributes,))?;
     Ok(frame)
 }
 
-fn look(body: &mut SimulatedBody, rng: &mut Generator) -> Seen {
-    let (pose, echo_cm) = (body.pose(), body.read_sonar(rng));
-    let [x_cm, y_cm] = pose.position_cm.to_array();
-    Seen { x_cm, y_cm, heading_deg: pose.heading_rad.to_degrees(), echo_cm }
+impl Row {
+    fn of(robot: &SimulatedRobot, [left, right]: [f64; 2]) -> Self {
+        let [x_cm, y_cm, heading_deg] = robot.pose();
+        Row { t_ms: robot.t_ms(), left, right, x_cm, y_cm, heading_deg, echo_cm: robot.echo_cm() }
+    }
 }

@@ -7,6 +7,7 @@ use mindgap_command::kinds;
 use mindgap_learning::evaluation::predictions::{Predictions, predict};
 use mindgap_learning::learn::paper;
 use mindgap_learning::learn::train::{self as training, TABLE_ONE, Trainer};
+use mindgap_logs as logs;
 use mindgap_models::simulator;
 use mindgap_workers::Workers;
 use pyo3::exceptions::PyValueError;
@@ -134,12 +135,16 @@ pub fn train(py: Python<'_>, logs: &Logs, trainer: &str, seed: u64) -> PyResult<
         "paper" => Trainer::Paper(paper::Options::default()),
         other => return Err(PyValueError::new_err(format!("trainer {other:?}: expected \"fast\" or \"paper\""))),
     };
-    let sound = logs.sound(py, None)?;
+    trained(py, &logs.sound(py, None)?, &trainer, seed).map(Simulator::made)
+}
+
+/// Trains a simulator on usable logs; warns of networks that they do not support.
+pub fn trained(py: Python<'_>, logs: &logs::Logs, trainer: &Trainer, seed: u64) -> PyResult<simulator::Simulator> {
     let train = |interrupt: &Interrupt| {
-        training::train(&Workers::default(), &sound, &trainer, &TABLE_ONE, seed, &|_| interrupt.check())
+        training::train(&Workers::default(), logs, trainer, &TABLE_ONE, seed, &|_| interrupt.check())
     };
     let trained = interruptible(py, train)?.map_err(raised)?;
     let missing = trained.missing.iter().map(|missing| format!("no {} network: {}", missing.network, missing.reason));
     warn(py, missing.collect())?;
-    Ok(Simulator::made(trained))
+    Ok(trained)
 }

@@ -7,5 +7,6 @@ pub mod closed_loop;
 pub mod compare;
 pub mod demo;
 pub mod experiments;
+pub mod export;
 pub mod fleet;
 pub mod on_board;

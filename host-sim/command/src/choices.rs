@@ -33,6 +33,25 @@ pub const ENGINES: &Names = &[
     ("isaac", "Isaac Sim"),
 ];
 
+/// Names of [`Format`](mindgap_applications::export::Format).
+pub const FORMATS: &Names = &[
+    ("nxc", "NXC source for the LEGO NXT's standard firmware"),
+    ("rxe", "Executable for the brick, without log and display"),
+    ("rust", "Constants for the crate `mindgap-core`"),
+    ("c", "C99 header with the controller's state machine"),
+    ("arduino", "Arduino sketch; for a simulator, a header to include in one"),
+    (
+        "pybricks",
+        "MicroPython program for an NXT, EV3, SPIKE or Technic hub with Pybricks firmware; for a simulator, a module to import in \
+         one",
+    ),
+    ("nxc-collect", "NXC source of a program that drives at random or by a script, and logs"),
+    (
+        "pybricks-collect",
+        "MicroPython program for hubs with Pybricks firmware that drives at random or by a script, and prints a log",
+    ),
+];
+
 /// Names of [`Time`](mindgap_import::units::Time).
 pub const TIMES: &Names = &[("s", "Seconds"), ("ms", "Milliseconds"), ("us", "Microseconds")];
 
@@ -55,6 +74,7 @@ where
 mod tests {
     use super::*;
     use mindgap_applications::challenge::cases::Outside;
+    use mindgap_applications::export::Format;
     use mindgap_import::units::{Angle, Length, Time};
     use mindgap_models::simulator::environment::SensorModel;
     use mindgap_patch::engine::Engine;
@@ -69,6 +89,7 @@ mod tests {
         assert_all_parse::<SensorModel>(SENSOR_MODELS);
         assert_all_parse::<Outside>(OUTSIDE);
         assert_all_parse::<Engine>(ENGINES);
+        assert_all_parse::<Format>(FORMATS);
         assert_all_parse::<Time>(TIMES);
         assert_all_parse::<Length>(LENGTHS);
         assert_all_parse::<Angle>(ANGLES);

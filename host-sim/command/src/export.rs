@@ -5,24 +5,16 @@ mod collect;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use clap::{Args, ValueEnum};
+use clap::Args;
+use mindgap_applications::export::{Format, Options, Program, Subject, Takes, export};
 use mindgap_controller_export::budget::Budget;
-use mindgap_controller_export::c_monitor::c_monitor;
-use mindgap_controller_export::c_networks::c_networks;
-use mindgap_controller_export::collect::{CollectOptions, Commands};
-use mindgap_controller_export::names::{BrickName, RunLogs};
-use mindgap_controller_export::nxc::{self, NxcOptions};
-use mindgap_controller_export::nxc_networks::{self, NetworksBudget, nxc_networks};
+use mindgap_controller_export::names::BrickName;
+use mindgap_controller_export::nxc_networks::NetworksBudget;
 use mindgap_controller_export::onboard::Safety;
-use mindgap_controller_export::pybricks_networks::{PybricksNetwork, pybricks_networks};
-use mindgap_controller_export::rust_monitor::rust_monitor;
-use mindgap_controller_export::rust_networks::rust_networks;
-use mindgap_controller_export::{
-    ExportError, Origin, arduino, c, collect as data_collection, pybricks, pybricks_collect, rust, rxe,
-};
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use super::choices::{FORMATS, one_of};
 use super::json_output::JsonOption;
 use super::ports::PortOptions;
 use super::{Run, kinds};
@@ -32,11 +24,7 @@ use mindgap_foundations::error::{Error, Result};
 use mindgap_foundations::executor::Executor;
 use mindgap_foundations::schema_number::SchemaNumber;
 use mindgap_logs::controller_file::ControllerFile;
-use mindgap_logs::range_sensor::ULTRASONIC;
-use mindgap_models::simulator::fixed_point::{COMMANDS, DOCUMENTATION, FACING, FixedNetworks};
-use mindgap_models::simulator::monitor::MonitorLaw;
-use mindgap_models::simulator::monitor::directions::NAMED;
-use mindgap_models::simulator::{Learned, Simulator};
+use mindgap_models::simulator::Simulator;
 
 /// Export a controller as an onboard program.
 ///
@@ -51,7 +39,7 @@ pub struct Export {
     )]
     input: Option<PathBuf>,
     /// Output format (default: by the ending of --out: .nxc, .rxe, .rs, .c or .h, .ino, .py).
-    #[arg(long, value_enum)]
+    #[arg(long, value_name = "FORMAT", value_parser = one_of::<Format>(FORMATS))]
     format: Option<Format>,
     /// The file to write.
     #[arg(long)]
@@ -121,49 +109,17 @@ enum Resources {
     },
 }
 
-/// Memory and time that a program needs on a brick, as text and as JSON.
-struct Takes {
-    text: String,
-    resources: Resources,
-}
-
-impl From<Budget> for Takes {
-    fn from(budget: Budget) -> Self {
-        let Budget { program_bytes, memory_bytes, log_bytes, step_ms, worst_step_ms, .. } = budget;
-        let resources = Resources::Program { program_bytes, memory_bytes, log_bytes, step_ms, worst_step_ms };
-        Takes { text: budget.to_string(), resources }
+impl From<Takes> for Resources {
+    fn from(takes: Takes) -> Self {
+        match takes {
+            Takes::Program(Budget { program_bytes, memory_bytes, log_bytes, step_ms, worst_step_ms, .. }) => {
+                Resources::Program { program_bytes, memory_bytes, log_bytes, step_ms, worst_step_ms }
+            }
+            Takes::Networks(NetworksBudget { program_bytes, memory_bytes, answer_ms, .. }) => {
+                Resources::Networks { program_bytes, memory_bytes, answer_ms: answer_ms.into_iter().collect() }
+            }
+        }
     }
-}
-
-impl From<NetworksBudget> for Takes {
-    fn from(budget: NetworksBudget) -> Self {
-        let text = budget.to_string();
-        let NetworksBudget { program_bytes, memory_bytes, answer_ms, .. } = budget;
-        let answer_ms = answer_ms.into_iter().collect();
-        Takes { text, resources: Resources::Networks { program_bytes, memory_bytes, answer_ms } }
-    }
-}
-
-/// Output formats.
-#[derive(Clone, Copy, ValueEnum)]
-enum Format {
-    /// NXC source for the LEGO NXT's standard firmware.
-    Nxc,
-    /// Executable for the brick, without log and display.
-    Rxe,
-    /// Constants for the crate `mindgap-core`.
-    Rust,
-    /// C99 header with the controller's state machine.
-    C,
-    /// Arduino sketch; for a simulator, a header to include in one.
-    Arduino,
-    /// MicroPython program for an NXT, EV3, SPIKE or Technic hub with Pybricks firmware; for a simulator, a module to
-    /// import in one.
-    Pybricks,
-    /// NXC source of a program that drives at random or by a script, and logs.
-    NxcCollect,
-    /// MicroPython program for hubs with Pybricks firmware that drives at random or by a script, and prints a log.
-    PybricksCollect,
 }
 
 impl Run for Export {
@@ -173,127 +129,41 @@ impl Run for Export {
     }
 
     fn run(&self, _: &dyn Executor) -> Result<String> {
-        if (self.log.is_some() || self.display) && !matches!(self.format()?, Format::Nxc) {
-            return Err(Error::new("--log and --display need a controller and --format nxc"));
-        }
-        let runs_on_a_brick = matches!(self.format()?, Format::Nxc | Format::Rxe | Format::NxcCollect);
-        if self.safety() != Safety::default() && !runs_on_a_brick {
-            return Err(Error::new(
-                "--stop-cm and --stall need a program for a brick: --format nxc, rxe or nxc-collect",
-            ));
-        }
-        if self.monitor && !matches!(self.format()?, Format::C | Format::Arduino | Format::Rust) {
-            return Err(Error::new("--monitor needs a simulator and --format c, arduino or rust"));
-        }
-        let (program, budget) = match &self.input {
-            None if self.format.is_none() => {
-                let what =
-                    "a controller or a simulator is needed; --format nxc-collect and pybricks-collect alone need none";
-                return Err(Error::new(what));
-            }
-            None => self.collection(self.collect.random())?,
-            // Simulators are JSON; no TOML file begins with a brace.
-            Some(input) if files::read_text(input)?.trim_start().starts_with('{') => self.networks(input)?,
-            Some(input) if self.monitor => {
-                return Err(Error::in_file(input, "is no simulator, which --monitor needs"));
-            }
-            Some(input) => self.onboard(input)?,
-        };
-        let bytes = program.len();
-        files::write(&self.out, program)?;
-        let (budget, takes) = budget.map(|Takes { text, resources }| (text + "\n", resources)).unzip();
-        let text = format!("{} written\n{}", self.out.display(), budget.unwrap_or_default());
-        let results = ExportResults { schema: SchemaNumber, program: &self.out, bytes, takes };
-        self.json.emit_sorted(&results, text)
+        let named = self.input.as_ref().unwrap_or(&self.out);
+        let Program { content, takes } = self.program().map_err(|error| error.or_in_file(named))?;
+        let bytes = content.len();
+        files::write(&self.out, content)?;
+        let needs = takes.as_ref().map_or(String::new(), |takes| format!("{takes}\n"));
+        let text = format!("{} written\n{needs}", self.out.display());
+        let takes = takes.map(Resources::from);
+        self.json.emit_sorted(&ExportResults { schema: SchemaNumber, program: &self.out, bytes, takes }, text)
     }
 }
 
 impl Export {
-    fn collection(&self, (step_ms, commands): (u16, Commands)) -> Result<(Vec<u8>, Option<Takes>)> {
-        let named = self.input.as_ref().unwrap_or(&self.out);
-        let refused = |e: ExportError| Error::in_file(named, e.to_string());
-        if let Format::PybricksCollect = self.format()? {
-            return Ok((pybricks_collect::program(step_ms, &commands).map_err(refused)?.into_bytes(), None));
-        }
-        let (program, wiring, safety) = (self.program_name()?, self.ports.wiring(), self.safety());
-        let options = CollectOptions { program, wiring, safety, step_ms, commands };
-        let source = data_collection::program(&options).map_err(refused)?;
-        Ok((source.into_bytes(), Some(data_collection::budget(&options).into())))
-    }
-
-    fn networks(&self, input: &Path) -> Result<(Vec<u8>, Option<Takes>)> {
-        let simulator = Simulator::read(input)?;
-        let law = self.monitor.then(|| MonitorLaw::of(&simulator)).transpose();
-        let law = law.map_err(|error| error.or_in_file(input))?;
-        let quantised = || FixedNetworks::quantise(&simulator).map_err(|error| error.or_in_file(input));
-        match self.format()? {
-            Format::Rust => {
-                let monitor = law.map_or(String::new(), |law| format!("\n{}", rust_monitor(&law.law())));
-                Ok(((rust_networks(&quantised()?.rust_definitions()) + &monitor).into_bytes(), None))
-            }
-            Format::Nxc => {
-                let networks = quantised()?.tabulated(["Turn", "Forward", "Lateral", "EchoProbability", "EchoValue"]);
-                Ok((nxc_networks(&networks).into_bytes(), Some(nxc_networks::budget(&networks).into())))
-            }
-            Format::C | Format::Arduino => {
-                let monitor = law.as_ref().map(monitor_in_c).unwrap_or_default();
-                Ok((c_networks(&quantised()?.tabulated(NAMES), &monitor).into_bytes(), None))
-            }
-            Format::Pybricks => {
-                let networks = float_networks(&simulator).map_err(|error| error.or_in_file(input))?;
-                Ok((pybricks_networks(&networks).into_bytes(), None))
-            }
-            Format::Rxe | Format::NxcCollect | Format::PybricksCollect => Err(Error::in_file(
-                input,
-                "contains networks, which the formats rxe, nxc-collect and pybricks-collect do not support",
-            )),
-        }
-    }
-
-    fn onboard(&self, input: &Path) -> Result<(Vec<u8>, Option<Takes>)> {
-        let read = || {
-            let file = ControllerFile::read(input)?;
-            // A program reads the one sensor on its port; which one of the robot's that is, the wiring decides.
-            file.sensor(ULTRASONIC).map_err(|error| error.or_in_file(input))?;
-            let origin = Origin::from(&file);
-            Ok((file.controller, origin))
+    fn program(&self) -> Result<Program> {
+        let options = Options {
+            format: self.format()?,
+            file: &self.out,
+            wiring: self.ports.wiring(),
+            safety: Safety { stop_cm: self.stop_cm, stall: self.stall },
+            log: self.log.clone(),
+            display: self.display,
+            monitor: self.monitor,
         };
-        let refused = |e: ExportError| Error::in_file(input, e.to_string());
-        Ok(match self.format()? {
-            Format::Rxe => {
-                self.program_name()?;
-                let (controller, _) = read()?;
-                (
-                    rxe::program(&controller, &self.ports.wiring(), self.safety()).map_err(refused)?,
-                    Some(rxe::budget(&controller, self.safety()).into()),
-                )
-            }
-            Format::NxcCollect | Format::PybricksCollect => self.collection(collect::script(input)?)?,
-            Format::Rust => {
-                let (controller, origin) = read()?;
-                (rust::module(&controller, &origin).map_err(refused)?.into_bytes(), None)
-            }
-            Format::C => {
-                let (controller, origin) = read()?;
-                (c::header(&controller, &origin).map_err(refused)?.into_bytes(), None)
-            }
-            Format::Arduino => {
-                let (controller, origin) = read()?;
-                (arduino::sketch(&controller, &origin).map_err(refused)?.into_bytes(), None)
-            }
-            Format::Pybricks => {
-                let (controller, origin) = read()?;
-                (pybricks::program(&controller, &origin).map_err(refused)?.into_bytes(), None)
-            }
-            Format::Nxc => {
-                let ((controller, origin), program) = (read()?, self.program_name()?);
-                let (wiring, safety, display) = (self.ports.wiring(), self.safety(), self.display);
-                let log = self.logs(&program).transpose().map_err(|e| Error::in_file(&self.out, e.to_string()))?;
-                let options = NxcOptions { program, wiring, safety, log, display };
-                let source = nxc::program(&controller, &origin, &options).map_err(refused)?;
-                (source.into_bytes(), Some(nxc::budget(&controller, &options).into()))
-            }
-        })
+        let Some(input) = &self.input else {
+            let (step_ms, commands) = self.collect.random();
+            return export(&Subject::Collection(step_ms, commands), &options);
+        };
+        // Simulators are JSON; no TOML file begins with a brace.
+        if files::read_text(input)?.trim_start().starts_with('{') {
+            export(&Subject::Simulator(&Simulator::read(input)?), &options)
+        } else if options.format.collects() {
+            let (step_ms, commands) = collect::script(input)?;
+            export(&Subject::Collection(step_ms, commands), &options)
+        } else {
+            export(&Subject::Controller(&ControllerFile::read(input)?), &options)
+        }
     }
 
     /// Returns the format that was given, or that of the output's ending.
@@ -310,49 +180,4 @@ impl Export {
             _ => return Err(Error::in_file(&self.out, "has an ending that stands for no format: give --format")),
         })
     }
-
-    fn safety(&self) -> Safety {
-        Safety { stop_cm: self.stop_cm, stall: self.stall }
-    }
-
-    /// Returns the names of the logs, if logging is requested.
-    fn logs(&self, program: &BrickName) -> Option<std::result::Result<RunLogs, ExportError>> {
-        let named = |name: &BrickName| RunLogs::named_after(name);
-        let by_program = || named(&format!("{}.csv", program.stem()).parse()?);
-        self.log.as_ref().map(|name| name.as_ref().map_or_else(by_program, named))
-    }
-
-    /// Returns the compiled program's name on the brick, which is that of the output file.
-    fn program_name(&self) -> Result<BrickName> {
-        let stem = self.out.file_stem().unwrap_or_default().to_string_lossy();
-        BrickName::program(&stem).map_err(|e| Error::in_file(&self.out, e.to_string()))
-    }
-}
-
-/// Names of the networks in C and Python.
-const NAMES: [&str; 5] = ["turn", "forward", "lateral", "echo_probability", "echo_value"];
-
-fn monitor_in_c(law: &MonitorLaw) -> String {
-    c_monitor(&law.law(), &NAMED.map(|named| named.name))
-}
-
-fn float_networks(simulator: &Simulator) -> Result<[PybricksNetwork; 5]> {
-    simulator.need_no_filter()?;
-    Ok([
-        float_network(simulator, &simulator.turn, 0, COMMANDS)?,
-        float_network(simulator, &simulator.forward, 1, COMMANDS)?,
-        float_network(simulator, &simulator.lateral, 2, COMMANDS)?,
-        float_network(simulator, &simulator.echo_probability, 3, FACING)?,
-        float_network(simulator, &simulator.echo_value, 4, FACING)?,
-    ])
-}
-
-fn float_network<const N: usize>(
-    simulator: &Simulator,
-    learned: &Option<Learned<N>>,
-    place: usize,
-    inputs: [&str; N],
-) -> Result<PybricksNetwork> {
-    let learned = simulator.need(learned, NAMES[place])?;
-    Ok(PybricksNetwork::new(NAMES[place], DOCUMENTATION[place], inputs, &learned.network))
 }

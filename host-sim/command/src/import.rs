@@ -86,6 +86,13 @@ pub struct ImportResults<'a> {
     report: &'a Report,
 }
 
+impl<'a> ImportResults<'a> {
+    /// Returns the results of an import.
+    pub fn of(report: &'a Report) -> Self {
+        ImportResults { schema: SchemaNumber, report }
+    }
+}
+
 impl Import {
     /// Returns the subcommand; clap guarantees that there is one.
     fn way(&self) -> Option<&dyn Run> {
@@ -129,12 +136,12 @@ impl Run for Brick {
         logs.write(&self.out)?;
         page.map_or(Ok(()), |(path, page)| files::write(path, page))?;
         let text = format!("{}{}: {}\n", describe(&report), self.out.display(), count(logs.runs.len(), "run"));
-        let results = ImportResults { schema: SchemaNumber, report: &report };
-        emit_sorted(self.json.as_deref(), &results, text)
+        emit_sorted(self.json.as_deref(), &ImportResults::of(&report), text)
     }
 }
 
-fn describe(report: &Report) -> String {
+/// Returns the report for a terminal.
+pub fn describe(report: &Report) -> String {
     let tracks = report.tracks.iter().map(|TrackReport { file, body, frames, lost, jumps }| {
         let left_out = match (lost, jumps) {
             (0, 0) => String::new(),

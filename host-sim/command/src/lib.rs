@@ -26,7 +26,7 @@ mod fleet;
 mod fleet_text;
 mod general;
 mod guide;
-mod import;
+pub mod import;
 mod info;
 mod json_output;
 pub mod kinds;

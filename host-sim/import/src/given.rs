@@ -1,6 +1,6 @@
 //! Robot and scene of an import, as the user gives them, and the folder of logs that is made with them.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::assemble::{Assembled, Stated, assemble};
 use super::draft::{RobotDraft, SCENE, to_fill_in};
@@ -35,13 +35,21 @@ impl Given {
     /// # Errors
     /// When a file cannot be read.
     pub fn read(robot: Option<&Path>, scene: Option<&Path>) -> Result<Self> {
-        let robot_text = robot.map(files::read_text).transpose()?;
-        let robot = robot.map(Robot::read_all).transpose()?;
+        let text = |path: &Path| Ok((path.to_owned(), files::read_text(path)?));
+        Given::parse(robot.map(text).transpose()?, scene.map(text).transpose()?)
+    }
+
+    /// As [`Given::read`], from the texts of the files; their paths are for messages.
+    ///
+    /// # Errors
+    /// When a text cannot be parsed.
+    pub fn parse(robot: Option<(PathBuf, String)>, scene: Option<(PathBuf, String)>) -> Result<Self> {
+        let parsed = robot.as_ref().map(|(path, text)| Robot::parse_all(path, text)).transpose()?;
         let (scene, scene_text) = match scene {
-            Some(path) => (Scene::read(path)?, files::read_text(path)?),
+            Some((path, text)) => (Scene::parse(&path, &text)?, text),
             None => (Scene::default(), SCENE.to_owned()),
         };
-        Ok(Given { robot, robot_text, scene, scene_text })
+        Ok(Given { robot: parsed, robot_text: robot.map(|(_, text)| text), scene, scene_text })
     }
 
     /// Returns the range sensors of the robot.

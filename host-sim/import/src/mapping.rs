@@ -57,11 +57,18 @@ impl Mapping {
     /// # Errors
     /// When it cannot be read or parsed, or names an unknown quantity or unit.
     pub fn read(path: &Path) -> Result<Self> {
-        let text = files::read_text(path)?;
-        let tables: BTreeMap<String, BTreeMap<String, Spanned<Entry>>> = files::from_toml(path, &text)?;
+        Mapping::parse(path, &files::read_text(path)?)
+    }
+
+    /// Parses the text of a mapping file; `path` is for messages.
+    ///
+    /// # Errors
+    /// As [`Mapping::read`].
+    pub fn parse(path: &Path, text: &str) -> Result<Self> {
+        let tables: BTreeMap<String, BTreeMap<String, Spanned<Entry>>> = files::from_toml(path, text)?;
         let columns = |table: BTreeMap<String, Spanned<Entry>>| {
             let mapped = table.into_iter().map(|(name, entry)| {
-                let line = files::line_at(&text, entry.span().start);
+                let line = files::line_at(text, entry.span().start);
                 mapped(&name, entry.into_inner()).map_err(|what| Error::at_line(path, line, what))
             });
             mapped.collect::<Result<Vec<_>>>()

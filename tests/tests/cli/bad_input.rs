@@ -265,7 +265,7 @@ fn options_of_another_export_format_are_refused() {
     sandbox.write("c.toml", CONTROLLER);
     for options in ["--format rxe --log a.csv", "--format c --display"] {
         let refusal = sandbox.refused(&format!("export c.toml --out c.out {options}"));
-        assert_eq!(refusal, "--log and --display need a controller and --format nxc");
+        assert_eq!(refusal, "c.toml: a log and a display need a controller and format nxc");
     }
 }
 

@@ -1,6 +1,6 @@
 //! `mindgap import streams` and `mindgap import bag`
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Args;
 use schemars::JsonSchema;
@@ -99,6 +99,13 @@ pub struct RecordingsResults<'a> {
     report: &'a RecordingsReport,
 }
 
+impl<'a> RecordingsResults<'a> {
+    /// Returns the results of an import.
+    pub fn of(report: &'a RecordingsReport) -> Self {
+        RecordingsResults { schema: SchemaNumber, report }
+    }
+}
+
 #[derive(Args)]
 struct Target {
     /// Measured dimensions of the robot, robot.toml (default: a draft to fill in is written with the logs).
@@ -112,21 +119,13 @@ struct Target {
     out: PathBuf,
     /// Watchdog time of the base, ms: it stops this long after the last command. `none` if it drives on (default: inferred from
     /// the motion during pauses in the commands).
-    #[arg(long, value_name = "MS", value_parser = watchdog)]
+    #[arg(long, value_name = "MS")]
     watchdog_ms: Option<Watchdog>,
     #[command(flatten)]
     json: JsonOption,
     /// Write an HTML page of the logs, as `mindgap check --html` does.
     #[arg(long, value_name = "FILE")]
     html: Option<PathBuf>,
-}
-
-fn watchdog(text: &str) -> std::result::Result<Watchdog, String> {
-    if text == "none" {
-        return Ok(Watchdog::None);
-    }
-    let ms = text.parse().ok().filter(|ms: &f64| *ms >= 0.0 && *ms < 1e6);
-    ms.map(Watchdog::StopsAfter).ok_or_else(|| "give a time in ms, or none".into())
 }
 
 impl Run for Streams {
@@ -204,9 +203,9 @@ impl Target {
         let page = self.html.as_ref().map(|path| (path, check::surveyed(logs.clone(), &self.out, &notes(&report)).1));
         files.write(&self.out)?;
         page.map_or(Ok(()), |(path, page)| files::write(path, page))?;
-        let text = describe(&report, logs.robot.step_ms, &self.out);
-        let results = RecordingsResults { schema: SchemaNumber, report: &report };
-        self.json.emit_sorted(&results, text)
+        let text = describe(&report, logs.robot.step_ms);
+        let text = format!("{text}{}: {} runs\n", self.out.display(), logs.runs.len());
+        self.json.emit_sorted(&RecordingsResults::of(&report), text)
     }
 }
 
@@ -215,7 +214,8 @@ fn notes(report: &RecordingsReport) -> Vec<String> {
     report.to_fill_in.iter().map(|line| format!("To fill in: {line}")).collect()
 }
 
-fn describe(report: &RecordingsReport, step_ms: f64, out: &Path) -> String {
+/// Returns the report for a terminal.
+pub fn describe(report: &RecordingsReport, step_ms: f64) -> String {
     let mut text: String = report.recordings.iter().map(|recording| of_recording(recording, step_ms)).collect();
     if report.recordings.iter().any(|recording| !recording.is_untracked()) {
         let check = &report.odometry_check;
@@ -235,8 +235,7 @@ fn describe(report: &RecordingsReport, step_ms: f64, out: &Path) -> String {
     let mut lines = |title: &str, lines: &[String]| lines.iter().for_each(|line| text += &format!("{title}: {line}\n"));
     lines("logs", &report.findings);
     lines("fill in", &report.to_fill_in);
-    let runs: usize = report.recordings.iter().map(|recording| recording.runs.len()).sum();
-    text + &format!("{}: {runs} runs\n", out.display())
+    text
 }
 
 /// Returns a line for everything that is not used.

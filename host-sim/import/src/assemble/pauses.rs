@@ -1,5 +1,7 @@
 //! What the base does while no commands arrive: most bases stop by themselves after a while, others drive on.
 
+use std::str::FromStr;
+
 use crate::clocks::{align, lag};
 use crate::motion::CumulativeMotion;
 use crate::recording::Commands;
@@ -18,6 +20,18 @@ pub enum Watchdog {
     StopsAfter(f64),
     /// It drives on.
     None,
+}
+
+impl FromStr for Watchdog {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        if text == "none" {
+            return Ok(Watchdog::None);
+        }
+        let ms = text.parse().ok().filter(|ms: &f64| *ms >= 0.0 && *ms < 1e6);
+        ms.map(Watchdog::StopsAfter).ok_or_else(|| "give a time in ms, or none".into())
+    }
 }
 
 /// A pause is longer than this multiple of the usual interval between commands.
