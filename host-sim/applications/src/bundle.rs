@@ -77,7 +77,7 @@ impl Nameless {
             all.extend(files.into_iter().map(|(name, text)| (format!("{folder}/{name}"), text)));
             nameless.push(Session { folder: folder.into(), conditions });
         }
-        // The scene as its file has it: a number that is computed anew may differ in its last digit.
+        // The scene as its file has it: a number that is computed again may differ in its last digit.
         if let Some((name, text)) = all.iter().find(|(name, _)| name.ends_with("/scene.toml")) {
             logs.scene = Scene::parse(Path::new(name), text)?;
         }

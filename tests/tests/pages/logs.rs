@@ -41,7 +41,7 @@ fn logs_show_paths_speeds_readings_and_defects_without_scripts() {
         assert_eq!(seen.answer(3), 5, "a mark for each jump");
         assert_eq!(seen.answer(4), 4, "runs over time");
         assert!(seen.answer(5).as_u64() > Some(100), "readings are drawn");
-        assert!(seen.word(6).contains("drive_scale"), "{}", seen.word(6));
+        assert!(seen.word(6).contains("drive scale"), "{}", seen.word(6));
         assert!(seen.word(7).contains("All 24 runs."), "{}", seen.word(7));
     }
 }
