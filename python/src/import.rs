@@ -186,15 +186,14 @@ pub fn import_brick(
     body: Option<String>,
 ) -> PyResult<Imported> {
     let (path, text) = convert::text(robot, "robot")?;
-    let (robot, sensors) = Robot::parse_all(&path, &text).map_err(raised)?;
+    let robot = Robot::parse_all(&path, &text).map_err(raised)?;
     let scene: Scene = convert::scene(scene)?;
     let units = units(time_unit, length_unit, angle_unit)?;
     let stated = Statements { units, body, ..Statements::default() };
     let files = Vec::from(files);
     let mut oddities = Vec::new();
     let merged = interruptible(py, |interrupt| {
-        let merged = brick::import(&files, &stated, robot, scene, |odd| oddities.push(odd), |_, _| interrupt.check());
-        merged.map(|(logs, report)| (logs.of_first(sensors, |odd| oddities.push(odd)), report))
+        brick::import(&files, &stated, robot, scene, |odd| oddities.push(odd), |_, _| interrupt.check())
     })?;
     warn(py, oddities)?;
     let (logs, report) = merged.map_err(raised)?;
