@@ -8,7 +8,7 @@ pub fn rust_monitor(law: &Law) -> String {
     let whitening: String = law.whitening.iter().map(whitening).collect();
     let [along, across] = law.travel;
     format!(
-        "use mindgap_core::monitor::{{Correction, Law, Whitening}};
+        "use mindgap_core::monitor::{{Correction, Factor, Gains, Law, Whitening}};
 
 /// What the monitor knows of the unchanged robot.
 pub static LAW: Law = Law {{
