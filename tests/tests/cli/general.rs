@@ -106,7 +106,7 @@ fn the_format_of_an_export_follows_from_its_ending() {
         assert!(sandbox.bytes(&format!("a.{ending}")) == by_ending, "{ending}");
     }
     assert!(sandbox.refused("export c.toml --out a.txt").starts_with("a.txt: has an ending that stands for no format"));
-    assert!(sandbox.refused("export --out b.nxc").starts_with("a controller or a simulator is needed"));
+    assert!(sandbox.refused("export --out b.nxc").starts_with("b.nxc: a controller or a simulator is needed"));
 }
 
 /// A file that came with data cannot decide what is run or written.
