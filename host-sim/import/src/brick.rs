@@ -84,7 +84,7 @@ pub fn import(
             untracked(&log, &robot, name)
         } else {
             match_track(&log, &tracks, &robot).and_then(|(track, found)| {
-                let merged_run = merge(&log, track, &found, name);
+                let merged_run = merge(&log, Some((track, &found)), name);
                 let mismatch = ScaleCheck::of_wheels(&merged_run.0, &robot)
                     .refusal("the wheels", &track.file.display().to_string());
                 mismatch.map_or(Ok(merged_run), Err)
@@ -205,38 +205,24 @@ fn untracked(log: &BrickLog, robot: &Robot, name: String) -> std::result::Result
     if by_wheels.windows(2).all(|pair| pair[0].by == pair[1].by) {
         return Err("its rotation counters never change, and none of the files is a track of a camera".into());
     }
-    let mut run = Run { name: name.clone(), rows: log.run.rows.clone() };
-    let changes_within_rows = command_times::place(&mut run);
-    let report = RunReport {
-        name,
-        track: None,
-        body: None,
-        offset_ms: None,
-        drift: None,
-        unexplained: None,
-        changes_within_rows,
-        rows: run.rows.len(),
-        outside: run.rows.len(),
-        in_gaps: 0,
-    };
-    Ok((run, report))
+    Ok(merge(log, None, name))
 }
 
-/// Adds the camera's poses to the rows of a log.
-fn merge(log: &BrickLog, track: &Track, found: &Alignment, name: String) -> (Run, RunReport) {
-    let clocks = &found.clocks;
-    let seen: Vec<Sighting> = log.run.rows.iter().map(|row| track.at(clocks.camera_ms(row.t_ms))).collect();
+/// Adds the poses of a matching track to the rows of a log, if there is one.
+fn merge(log: &BrickLog, matched: Option<(&Track, &Alignment)>, name: String) -> (Run, RunReport) {
+    let seen = |t_ms: f64| matched.map_or(Sighting::Outside, |(track, found)| track.at(found.clocks.camera_ms(t_ms)));
+    let seen: Vec<Sighting> = log.run.rows.iter().map(|row| seen(row.t_ms)).collect();
     let mut rows = log.run.rows.clone();
     seen.iter().enumerate().for_each(|(k, seen)| rows.edit(k, |row| row.pose = seen.pose()));
     let mut run = Run { name: name.clone(), rows };
     let changes_within_rows = command_times::place(&mut run);
     let report = RunReport {
         name,
-        track: Some(track.file.clone()),
-        body: track.body.clone(),
-        offset_ms: Some(clocks.offset_ms),
-        drift: Some(clocks.drift),
-        unexplained: Some(found.unexplained),
+        track: matched.map(|(track, _)| track.file.clone()),
+        body: matched.and_then(|(track, _)| track.body.clone()),
+        offset_ms: matched.map(|(_, found)| found.clocks.offset_ms),
+        drift: matched.map(|(_, found)| found.clocks.drift),
+        unexplained: matched.map(|(_, found)| found.unexplained),
         changes_within_rows,
         rows: seen.len(),
         outside: seen.iter().filter(|s| **s == Sighting::Outside).count(),

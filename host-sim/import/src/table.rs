@@ -188,17 +188,15 @@ impl Line<'_> {
     /// When the cell is anything else.
     pub fn number(&self, column: usize) -> Result<Option<f64>> {
         let text = self.text(column);
-        // Most cells are plain numbers.
-        if let Some(number) = text.parse().ok().filter(|number: &f64| !number.is_nan()) {
+        // Most cells are numbers, and no word for a missing one is a number.
+        if let Some(number) = cell::number(text) {
             return Ok(Some(number));
         }
         if cell::is_missing(text) {
             return Ok(None);
         }
-        cell::number(text).map(Some).ok_or_else(|| {
-            let name = self.table.names().get(column).map_or("a cell", String::as_str);
-            self.error(format!("{} = {:?} is not a number", shortened(name), shortened(text)))
-        })
+        let name = self.table.names().get(column).map_or("a cell", String::as_str);
+        Err(self.error(format!("{} = {:?} is not a number", shortened(name), shortened(text))))
     }
 
     /// Returns an error at this line.
