@@ -81,10 +81,14 @@ impl RunRows {
             .collect()
     }
 
+    /// Returns the indices of the rows as ranges.
+    pub fn ranges(&self) -> impl Iterator<Item = [usize; 2]> {
+        self.rows.chunk_by(|a, b| a + 1 == *b).map(|range| [range[0], range[range.len() - 1]])
+    }
+
     /// Returns the line numbers in the run's file as ranges; the header is line 1.
     pub fn lines(&self) -> Vec<[usize; 2]> {
-        let ranges = self.rows.chunk_by(|a, b| a + 1 == *b);
-        ranges.map(|range| [range[0] + 2, range[range.len() - 1] + 2]).collect()
+        self.ranges().map(|range| range.map(|row| row + 2)).collect()
     }
 }
 

@@ -5,7 +5,6 @@ use std::collections::BTreeMap;
 use glam::DVec2;
 
 use mindgap_diagnosis::survey::Survey;
-use mindgap_logs::inspection::RunRows;
 use mindgap_logs::{Logs, Run};
 
 /// What marked rows are called in legends.
@@ -33,7 +32,7 @@ impl<'a> Drawn<'a> {
         let mut marked: BTreeMap<&str, Vec<(&'static str, [usize; 2])>> = BTreeMap::new();
         for found in survey.findings.iter().filter(|found| is_marked(found.rows(), logged)) {
             for of in &found.rows_by_run {
-                marked.entry(&of.run).or_default().extend(ranges(of).map(|range| (found.id, range)));
+                marked.entry(&of.run).or_default().extend(of.ranges().map(|range| (found.id, range)));
             }
         }
         let drawn = |logged: &'a Run| {
@@ -84,12 +83,6 @@ pub fn is_marked(rows: usize, logged: &Logs) -> bool {
 }
 
 /// Returns some elements of a list, evenly spread.
-pub fn spread<T: Copy>(all: &[T], count: usize) -> Vec<T> {
-    (0..count).map(|i| all[i * all.len() / count]).collect()
-}
-
-/// Returns the rows of a run as ranges of indices, from the lines of its file.
-fn ranges(of: &RunRows) -> impl Iterator<Item = [usize; 2]> {
-    const LINE_OF_FIRST_ROW: usize = 2;
-    of.lines().into_iter().map(|range| range.map(|line| line - LINE_OF_FIRST_ROW))
+pub fn spread<T: Clone>(all: &[T], count: usize) -> Vec<T> {
+    (0..count).map(|i| all[i * all.len() / count].clone()).collect()
 }

@@ -45,14 +45,13 @@ fn run(drawn: &Drawn, corrected: &Logs, step_ms: f64) -> Markup {
     let wheel =
         |wheel: usize| -> Points { commands.iter().map(|(t_s, command)| DVec2::new(*t_s, command[wheel])).collect() };
     let of_commands = vec![("left", wheel(0)), ("right", wheel(1))];
-    let asked = |rate: usize| -> Points {
-        commands.iter().map(|(t_s, command)| DVec2::new(*t_s, rates::commanded(robot, *command)[rate])).collect()
-    };
+    let asked: Vec<(f64, Option<Rates>)> =
+        commands.iter().map(|(t_s, command)| (*t_s, Some(rates::commanded(robot, *command)))).collect();
     let measured = coarse.runs.first().map(|run| Measured::of(run, &coarse.robot)).unwrap_or_default();
     let [forward, turn] = [0, 1].map(|rate| {
         let gyro = if rate == 1 { measured.gyro.clone() } else { Vec::new() };
         vec![
-            ("commanded", asked(rate)),
+            ("commanded", rate_of(&asked, rate)),
             ("tracked", rate_of(&measured.tracked, rate)),
             ("rotation counters", rate_of(&measured.counters, rate)),
             ("gyro", gyro),

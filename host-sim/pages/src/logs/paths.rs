@@ -30,22 +30,22 @@ pub fn section(runs: &[Drawn], corrected: &Logs) -> Section {
     let rows: usize = shown.iter().map(|drawn| drawn.run.rows.len()).sum();
     let every = rows.div_ceil(MOST_POINTS).max(1);
     let marks: Vec<(DVec2, String)> = shown.iter().flat_map(|drawn| drawn.marks()).collect();
-    let which: Vec<usize> = (0..marks.len()).collect();
-    let which = spread(&which, marks.len().min(MOST_MARKS));
+    let marked = spread(&marks, marks.len().min(MOST_MARKS));
+    let shown_marks = marked.len();
     let drawn = Driven {
         room: Room::new(&corrected.scene, REACHED_CM, places().map(|pose| pose.position_cm)),
         runs: shown.iter().map(|drawn| (drawn.name(), trace(drawn, every))).collect(),
-        marked: which.iter().map(|mark| marks[*mark].clone()).collect(),
+        marked,
         marked_name: MARKED.into(),
     };
-    let said = format!("Paths of {} runs on a map of the room, with {} marked places.", shown.len(), which.len());
+    let said = format!("Paths of {} runs on a map of the room, with {shown_marks} marked places.", shown.len());
     let body = html! {
         (chart("driven", &drawn.draw(), &said, html! {
             (how_many(shown.len(), runs.len())) " A line is broken where the tracker lost the robot."
             @if every > 1 { " Every " (every) "th row is drawn." }
             @if !marks.is_empty() {
                 " Dots mark rows with a defect, at the place that was logged"
-                @if which.len() < marks.len() { ": " (which.len()) " of " (marks.len()) }
+                @if shown_marks < marks.len() { ": " (shown_marks) " of " (marks.len()) }
                 "."
             }
         }))
