@@ -34,10 +34,11 @@ pub fn rollout<'py>(
 ) -> PyResult<Bound<'py, PyAny>> {
     let mut robot = SimulatedRobot::at(simulator, convert::scene(scene)?, start, seed)?;
     let mut rows = Vec::new();
+    let mut seen = robot.seen(py)?;
     for _ in 0..steps {
-        let (left, right) = controller.call1((robot.seen(py)?,))?.extract::<(f64, f64)>()?;
+        let (left, right) = controller.call1((seen,))?.extract::<(f64, f64)>()?;
         rows.push(Row::of(&robot, [left, right]));
-        robot.drive(py, left, right)?;
+        seen = robot.drive(py, left, right)?;
         if robot.crashed() {
             break;
         }

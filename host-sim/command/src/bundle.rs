@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::diagnose::{DiagnoseResults, answered, positive};
-use super::textbook::{KINEMATIC, not_a_recording, simulator_or_textbook};
+use super::textbook::{not_a_recording, simulator_file, simulator_or_textbook};
 use super::{Run, kinds};
 use mindgap_applications::bundle::{DIAGNOSIS, Nameless};
 use mindgap_diagnosis::Method;
@@ -45,12 +45,12 @@ pub struct Bundle {
 
 impl Run for Bundle {
     fn places(&self) -> Places {
-        let inputs = self.simulator_file().into_iter().chain(&self.logs);
+        let inputs = simulator_file(&self.sim).into_iter().chain(&self.logs);
         Places::default().reading(inputs).writing([&self.out], kinds::BUNDLE)
     }
 
     fn run(&self, _: &dyn Executor) -> Result<String> {
-        let simulator = self.simulator_file().map(|path| simulator_or_textbook(path)).transpose()?;
+        let simulator = simulator_file(&self.sim).map(|path| simulator_or_textbook(path)).transpose()?;
         let (sessions, logs) = sessions::read_all(&self.logs, super::read_logs)?;
         let nameless = Nameless::of(&sessions, logs)?;
         let request = Request {
@@ -74,11 +74,6 @@ impl Run for Bundle {
 }
 
 impl Bundle {
-    /// Returns the simulator file, or `None` for `kinematic`.
-    fn simulator_file(&self) -> Option<&PathBuf> {
-        Some(&self.sim).filter(|sim| sim.as_os_str() != KINEMATIC)
-    }
-
     /// Returns the options with which the unpacked logs are diagnosed again.
     fn options(&self) -> String {
         let step = self.step_ms.map_or(String::new(), |ms| format!(" --step-ms {ms}"));

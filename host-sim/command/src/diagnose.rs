@@ -13,7 +13,7 @@ use super::experiments::DriveOptions;
 use super::fleet::FleetRequest;
 use super::json_output::JsonOption;
 use super::patch_args::{self, PatchOptions};
-use super::textbook::{KINEMATIC, not_a_recording, simulator_or_textbook};
+use super::textbook::{not_a_recording, simulator_file, simulator_or_textbook};
 use super::{GAP, Run, kinds, progress};
 use mindgap_applications::experiments::DrivenScript;
 use mindgap_diagnosis::Method;
@@ -125,7 +125,8 @@ impl<'a> DiagnoseResults<'a> {
 
 impl Run for Diagnose {
     fn places(&self) -> Places {
-        let inputs = self.simulator_file().into_iter().chain(&self.logs).chain(&self.controller).chain(&self.effects);
+        let inputs =
+            simulator_file(&self.sim).into_iter().chain(&self.logs).chain(&self.controller).chain(&self.effects);
         let places = Places::default().reading(inputs).writing(self.json.path(), kinds::REPORT);
         let places = places.writing(&self.html, kinds::PAGE).writing(&self.apply, kinds::SIMULATOR);
         let places = places.writing(&self.formula, kinds::FORMULA).writing(&self.next_experiment, kinds::UNSIGNED);
@@ -149,7 +150,7 @@ impl Run for Diagnose {
         if self.fleet.is_none() && self.checkpoint.path().is_some() {
             return Err(Error::new("--checkpoint needs --fleet: the diagnosis of a single robot has no checkpoint"));
         }
-        let simulator = self.simulator_file().map(|path| simulator_or_textbook(path)).transpose()?;
+        let simulator = simulator_file(&self.sim).map(|path| simulator_or_textbook(path)).transpose()?;
         let controller = self.controller_of(simulator.as_ref())?;
         let request = Request {
             simulator: simulator.as_ref(),
@@ -237,11 +238,6 @@ impl Run for Diagnose {
 }
 
 impl Diagnose {
-    /// Returns the simulator file, or `None` for `kinematic`.
-    fn simulator_file(&self) -> Option<&PathBuf> {
-        Some(&self.sim).filter(|sim| sim.as_os_str() != KINEMATIC)
-    }
-
     /// Adds the runs that were driven as one more session, where the logs are of several.
     fn with_series(&self, mut sessions: Vec<Session>) -> Result<Vec<Session>> {
         if let Some(folder) = self.drive.folder().filter(|_| sessions.len() > 1) {
@@ -260,10 +256,7 @@ impl Diagnose {
     }
 
     fn simulator_name(&self) -> String {
-        match self.sim.as_os_str() == KINEMATIC {
-            true => textbook::NAME.into(),
-            false => self.sim.display().to_string(),
-        }
+        simulator_file(&self.sim).map_or_else(|| textbook::NAME.into(), |file| file.display().to_string())
     }
 
     fn source(&self) -> Result<Source> {

@@ -9,7 +9,7 @@ use mindgap_logs::recording_to_import;
 use mindgap_models::simulator::Simulator;
 
 /// Argument that selects the textbook model.
-pub const KINEMATIC: &str = "kinematic";
+const KINEMATIC: &str = "kinematic";
 
 /// Parses the argument that names a simulator file or the textbook model: a recording must be imported first.
 ///
@@ -20,6 +20,11 @@ pub fn not_a_recording(argument: &str) -> std::result::Result<PathBuf, String> {
         Some(import) => Err(format!("it is a recording: {import}, then give the logs after {KINEMATIC}")),
         None => Ok(argument.into()),
     }
+}
+
+/// Returns the simulator file that an argument names, or `None` for the textbook model.
+pub fn simulator_file(argument: &PathBuf) -> Option<&PathBuf> {
+    Some(argument).filter(|file| file.as_os_str() != KINEMATIC)
 }
 
 /// Reads a simulator file where `kinematic` would be accepted too.

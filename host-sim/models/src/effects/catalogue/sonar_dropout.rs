@@ -20,7 +20,7 @@ pub const EFFECT: Effect = Effect {
             // Over many readings the chain loses the share that a first reading loses.
             let lost = match context.echo_before {
                 Some(false) => persistence,
-                Some(true) => (probability * (1.0 - persistence) / (1.0 - probability)).min(1.0),
+                Some(true) => probability * (1.0 - persistence) / (1.0 - probability),
                 None => probability,
             };
             sensor.perturbation.p_dropout = 1.0 - (1.0 - sensor.perturbation.p_dropout) * (1.0 - lost);
