@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use std::sync::LazyLock;
 
+use mindgap_logs::Logs;
 use tempfile::TempDir;
 
 /// A temporary folder in which tests call the command. Dropping it removes the folder.
@@ -136,6 +137,15 @@ impl Sandbox {
     #[track_caller]
     pub fn json(&self, name: &str) -> serde_json::Value {
         serde_json::from_slice(&self.bytes(name)).unwrap_or_else(|e| panic!("{name}: {e}"))
+    }
+
+    /// Reads a folder of logs.
+    ///
+    /// # Panics
+    /// If it cannot be read, or has an oddity.
+    #[track_caller]
+    pub fn logs(&self, folder: &str) -> Logs {
+        Logs::read(&self.0.path().join(folder), |warning| panic!("{warning}")).expect("logs")
     }
 
     /// Writes a file.

@@ -3,7 +3,7 @@
 use mindgap_built_in_robot::{BuiltInRobot, default_robot};
 use mindgap_foundations::geometry::Pose;
 use mindgap_foundations::random::{Generator, generator};
-use mindgap_logs::{Logs, Scene};
+use mindgap_logs::Scene;
 use mindgap_tests::command::Sandbox;
 use mindgap_tests::form::short_or_long;
 use mindgap_tests::range_sensors::table;
@@ -119,7 +119,7 @@ fn clocks_are_aligned_and_each_row_gets_its_pose() {
         assert!((3.0..7.0).contains(&number("in_gaps")) && number("outside") == 0.0, "{run}");
         let jumps = sandbox.json("report.json")["tracks"][0]["jumps"].as_f64().expect("a number");
         assert!((1.0..30.0).contains(&jumps), "{jumps}");
-        let logs = Logs::read(&sandbox.path().join("logs"), |warning| panic!("{warning}")).expect("logs");
+        let logs = sandbox.logs("logs");
         for (row, pose) in logs.runs[0].rows.iter().zip(&drive.poses) {
             let off_cm = row.pose.map_or(0.0, |seen| seen.position_cm.distance(pose.position_cm));
             assert!(off_cm < 2.5, "seed {seed}: {off_cm} cm off at {} ms", row.t_ms);
@@ -193,7 +193,7 @@ fn without_a_track_counters_are_imported_and_diagnosed() {
     let report = sandbox.json("report.json");
     let run = &report["logs"][0]["run"];
     assert!(run["track"].is_null() && run["offset_ms"].is_null() && run["outside"] == run["rows"], "{run}");
-    let logs = Logs::read(&sandbox.path().join("logs"), |warning| panic!("{warning}")).expect("logs");
+    let logs = sandbox.logs("logs");
     let rows = &logs.runs[0].rows;
     assert!(rows.len() == STEPS + 1 && rows.iter().all(|row| row.pose.is_none() && row.rot_left_deg.is_some()));
     assert!(sandbox.run("check logs").contains("100 % of rows have rot_left_deg, rot_right_deg"));
@@ -230,7 +230,7 @@ fn every_range_sensor_of_a_brick_is_read_under_its_name() {
         "{}",
         outcome.err
     );
-    let logs = Logs::read(&sandbox.path().join("logs"), |warning| panic!("{warning}")).expect("logs");
+    let logs = sandbox.logs("logs");
     let rows = &logs.runs[0].rows;
     assert_eq!(rows.sensors().names().collect::<Vec<_>>(), ["ultrasonic", "left"]);
     assert!((0..rows.len()).all(|row| rows.further_cm(0, row) == Some(51.0 + row as f64)));

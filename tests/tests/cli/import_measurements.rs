@@ -186,7 +186,7 @@ fn each_range_sensor_gets_its_column() {
     });
     let said = import(&sandbox, &text);
     assert!(said.contains("sonar_left_cm is of range sensor left") && said.contains(" of rear"), "{said}");
-    let logs = mindgap_logs::Logs::read(&sandbox.path().join("logs"), |warning| panic!("{warning}")).expect("logs");
+    let logs = sandbox.logs("logs");
     let rows = &logs.runs[0].rows;
     for k in 1..rows.len() {
         let first = rows.at(k).echo_cm.expect("a reading");

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use mindgap_foundations::geometry::Pose;
-use mindgap_logs::{Logs, Row};
+use mindgap_logs::Row;
 use mindgap_tests::command::Sandbox;
 use mindgap_tests::ros_bags;
 
@@ -78,7 +78,7 @@ pub(super) fn with_streams() -> Sandbox {
 }
 
 pub(super) fn rows(sandbox: &Sandbox) -> Vec<Row> {
-    let logs = Logs::read(&sandbox.path().join("logs"), |warning| panic!("{warning}")).expect("logs");
+    let logs = sandbox.logs("logs");
     logs.runs.iter().flat_map(|run| &run.rows).collect()
 }
 

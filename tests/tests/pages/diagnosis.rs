@@ -7,7 +7,7 @@ use std::sync::LazyLock;
 use mindgap_tests::command::Sandbox;
 use mindgap_tests::rooms::trained;
 
-use crate::visit::{DARK_LAPTOP, DARK_PHONE, LAPTOP, PHONE, Visit, visit};
+use crate::visit::{LAPTOP, PHONE, Visit, in_all_windows, visit};
 
 /// A folder with the page of a robot that covers less ground and whose readings are too long.
 static DIAGNOSED: LazyLock<Sandbox> = LazyLock::new(|| {
@@ -23,8 +23,8 @@ fn page() -> PathBuf {
 
 #[test]
 fn it_is_sound_on_phones_and_laptops_by_day_and_by_night_and_answers_what_one_asks() {
-    let look = |window, picture| {
-        Visit::new(window, picture)
+    let look = |visit: Visit| {
+        visit
             .set("#moment", "14")
             .text("h1")
             .text("#causes")
@@ -34,12 +34,7 @@ fn it_is_sound_on_phones_and_laptops_by_day_and_by_night_and_answers_what_one_as
             .ask("document.querySelector('[data-chart=readings] .plane .robot .dots').getAttribute('d').length")
             .ask("document.querySelectorAll('[data-chart=apart] .plane .trail').length")
     };
-    let visits = [
-        look(PHONE, "diagnosis-phone"),
-        look(LAPTOP, "diagnosis-laptop"),
-        look(DARK_PHONE, "diagnosis-phone-dark"),
-        look(DARK_LAPTOP, "diagnosis-laptop-dark"),
-    ];
+    let visits = in_all_windows("diagnosis", look);
     for seen in visit(&page(), &visits) {
         let headline = seen.word(1);
         assert!(headline.starts_with("There is a gap, and known effects explain it: "), "{headline}");

@@ -4,7 +4,7 @@ use std::fs;
 
 use mindgap_tests::rooms::trained;
 
-use crate::visit::{DARK_LAPTOP, DARK_PHONE, LAPTOP, PHONE, Visit, visit};
+use crate::visit::{Visit, in_all_windows, visit};
 
 /// What somebody might call a robot.
 const ROBOT: &str = "robot<img src=x onerror=evil=1>&\"'";
@@ -22,8 +22,8 @@ fn a_fleet_shows_what_is_frequent_sorts_its_robots_and_keeps_names_words() {
     fs::create_dir(sandbox.path().join("fleet/broken<svg onload=evil=1>")).expect("such a name is possible");
     sandbox.run("diagnose sim.json fleet --fleet out");
     let names = "[...document.querySelectorAll('#robots tbody th')].map((robot) => robot.textContent).join('|')";
-    let look = |window, picture| {
-        Visit::new(window, picture)
+    let look = |visit: Visit| {
+        visit
             .text("h1")
             .ask("document.querySelectorAll('[data-chart=frequencies] svg circle').length")
             .ask(names)
@@ -33,12 +33,7 @@ fn a_fleet_shows_what_is_frequent_sorts_its_robots_and_keeps_names_words() {
             .ask("typeof evil === 'undefined' && document.images.length === 0")
             .text("#refused")
     };
-    let visits = [
-        look(PHONE, "fleet-phone"),
-        look(LAPTOP, "fleet-laptop"),
-        look(DARK_PHONE, "fleet-phone-dark"),
-        look(DARK_LAPTOP, "fleet-laptop-dark"),
-    ];
+    let visits = in_all_windows("fleet", look);
     for seen in visit(&sandbox.path().join("out/fleet.html"), &visits) {
         assert!(seen.word(0).starts_with("4 robots: "), "{}", seen.word(0));
         assert!(seen.answer(1).as_u64() >= Some(1), "a point for an effect");

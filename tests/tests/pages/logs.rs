@@ -1,24 +1,21 @@
 //! The page of logs.
 
-use std::path::Path;
-
-use mindgap_logs::Logs;
 use mindgap_tests::command::Sandbox;
 use mindgap_tests::faults::MOTION;
 
-use crate::visit::{DARK_LAPTOP, DARK_PHONE, LAPTOP, PHONE, Visit, visit};
+use crate::visit::{PHONE, Visit, in_all_windows, visit};
 
 #[test]
 fn logs_show_paths_speeds_readings_and_defects_without_scripts() {
     let sandbox = Sandbox::new();
     sandbox.run("record --out logs --runs 24 --steps 60");
-    let mut logs = read(&sandbox.path().join("logs"));
+    let mut logs = sandbox.logs("logs");
     let jumps = MOTION.iter().find(|fault| fault.id == "tracker_jump").expect("a fault");
     (jumps.put)(&mut logs);
     logs.write(&sandbox.path().join("faulty")).expect("a folder");
     sandbox.run("check faulty --html page.html");
-    let look = |window, picture| {
-        Visit::new(window, picture)
+    let look = |visit: Visit| {
+        visit
             .ask("[...document.querySelectorAll('main > section')].map((part) => part.id).join(' ')")
             .ask("document.scripts.length")
             .text("#defects")
@@ -28,12 +25,7 @@ fn logs_show_paths_speeds_readings_and_defects_without_scripts() {
             .text("#identified table")
             .text("#paths figcaption")
     };
-    let visits = [
-        look(PHONE, "logs-phone"),
-        look(LAPTOP, "logs-laptop"),
-        look(DARK_PHONE, "logs-phone-dark"),
-        look(DARK_LAPTOP, "logs-laptop-dark"),
-    ];
+    let visits = in_all_windows("logs", look);
     for seen in visit(&sandbox.path().join("page.html"), &visits) {
         assert_eq!(seen.word(0), "defects paths speeds readings holds identified");
         assert_eq!(seen.answer(1), 0, "charts need no scripts");
@@ -68,8 +60,4 @@ fn names_of_runs_stay_words_and_an_import_has_the_same_page() {
     assert_eq!(seen.answer(0), true);
     assert!(seen.word(1).contains("To fill in: robot.toml"), "{}", seen.word(1));
     assert_eq!(seen.answer(2), true, "a path is drawn");
-}
-
-fn read(folder: &Path) -> Logs {
-    Logs::read(folder, |warning| panic!("{warning}")).expect("logs")
 }

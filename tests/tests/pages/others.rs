@@ -2,26 +2,21 @@
 
 use mindgap_tests::rooms::{trained, with_scene};
 
-use crate::visit::{DARK_LAPTOP, DARK_PHONE, LAPTOP, PHONE, Visit, visit};
+use crate::visit::{Visit, in_all_windows, visit};
 
 #[test]
 fn an_evaluation_has_surfaces_that_turn_and_are_hatched() {
     let sandbox = trained();
     sandbox.run("evaluate sim.json logs --html page.html");
-    let look = |window, picture| {
-        Visit::new(window, picture)
+    let look = |visit: Visit| {
+        visit
             .ask("document.querySelectorAll('[data-chart=surface] svg svg').length")
             .ask("document.querySelectorAll('[data-chart=surface] title').length")
             .ask("document.querySelectorAll('[data-chart=sheet] polygon').length")
             .ask("document.querySelector('[data-chart=surface] title').textContent")
             .ask("document.scripts.length")
     };
-    let visits = [
-        look(PHONE, "evaluation-phone"),
-        look(LAPTOP, "evaluation-laptop"),
-        look(DARK_PHONE, "evaluation-phone-dark"),
-        look(DARK_LAPTOP, "evaluation-laptop-dark"),
-    ];
+    let visits = in_all_windows("evaluation", look);
     for seen in visit(&sandbox.path().join("page.html"), &visits) {
         // Two maps of 48 by 36 cells, each with a hatch in its plane and one in its legend, and two sheets of 24 by 24.
         assert_eq!(seen.answer(0), 4, "six runs are not everywhere");
@@ -37,20 +32,15 @@ fn a_simulation_shows_where_runs_end_and_what_the_controller_does() {
     let sandbox = with_scene();
     sandbox.run("evolve sim.json --scene scene.toml --out controller.toml --max-steps 20");
     sandbox.run("simulate sim.json controller.toml --scene scene.toml --runs 1000 --html page.html");
-    let look = |window, picture| {
-        Visit::new(window, picture)
+    let look = |visit: Visit| {
+        visit
             .set("#moment", "5")
             .text("#tuples")
             .text("#replay")
             .ask("[...document.querySelectorAll('[data-chart=turns] text')].map((text) => text.textContent).filter((text) => text.startsWith('tuple ')).join()")
             .ask("[...new Set([...document.querySelectorAll('[data-chart=turns] title')].map((title) => title.textContent.split(',')[0]))].sort().join()")
     };
-    let visits = [
-        look(PHONE, "simulation-phone"),
-        look(LAPTOP, "simulation-laptop"),
-        look(DARK_PHONE, "simulation-phone-dark"),
-        look(DARK_LAPTOP, "simulation-laptop-dark"),
-    ];
+    let visits = in_all_windows("simulation", look);
     for seen in visit(&sandbox.path().join("page.html"), &visits) {
         assert!(seen.word(1).contains("until a reading is"), "{}", seen.word(1));
         assert!(seen.word(2).contains("of 1000 runs, evenly spread"), "{}", seen.word(2));

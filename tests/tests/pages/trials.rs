@@ -3,7 +3,7 @@
 use mindgap_tests::command::Sandbox;
 use mindgap_tests::rooms::{SCENE, robot, trained};
 
-use crate::visit::{DARK_LAPTOP, DARK_PHONE, LAPTOP, PHONE, Visit, visit};
+use crate::visit::{PHONE, Visit, in_all_windows, visit};
 
 /// A hostile name for a room.
 const ROOM: &str = "room<img\u{a0}src=x\u{a0}onerror=evil=1>&'.toml";
@@ -25,8 +25,8 @@ fn looped(trials: usize) -> Sandbox {
 fn a_loop_shows_what_was_expected_what_happened_and_what_it_taught() {
     let sandbox = looped(3);
     let trials = sandbox.json("out/loop.json")["trials"].as_array().map_or(0, Vec::len);
-    let look = |window, picture| {
-        Visit::new(window, picture)
+    let look = |visit: Visit| {
+        visit
             .text("h1")
             .text("#turns table")
             .ask("[...document.querySelectorAll('[data-chart=map]')].filter((map) => map.querySelector('svg')).length")
@@ -34,12 +34,7 @@ fn a_loop_shows_what_was_expected_what_happened_and_what_it_taught() {
             .ask("typeof evil === 'undefined' && document.images.length === 0")
             .text(".kind")
     };
-    let visits = [
-        look(PHONE, "loop-phone"),
-        look(LAPTOP, "loop-laptop"),
-        look(DARK_PHONE, "loop-phone-dark"),
-        look(DARK_LAPTOP, "loop-laptop-dark"),
-    ];
+    let visits = in_all_windows("loop", look);
     for seen in visit(&sandbox.path().join("page.html"), &visits) {
         assert!(seen.word(0).contains("controller"), "{}", seen.word(0));
         assert!(seen.word(1).contains("reached the target") || seen.word(1).contains("missed it"), "{}", seen.word(1));

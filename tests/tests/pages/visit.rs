@@ -18,13 +18,19 @@ pub struct Window {
 
 pub const PHONE: Window = Window { width: 380, dark: false };
 pub const LAPTOP: Window = Window { width: 1280, dark: false };
-pub const DARK_PHONE: Window = Window { width: 380, dark: true };
-pub const DARK_LAPTOP: Window = Window { width: 1280, dark: true };
+const DARK_PHONE: Window = Window { width: 380, dark: true };
+const DARK_LAPTOP: Window = Window { width: 1280, dark: true };
+
+/// Returns visits that look in the same way in every window; pictures have the window's name behind `picture`.
+pub fn in_all_windows(picture: &str, look: impl Fn(Visit) -> Visit) -> [Visit; 4] {
+    [(PHONE, "phone"), (LAPTOP, "laptop"), (DARK_PHONE, "phone-dark"), (DARK_LAPTOP, "laptop-dark")]
+        .map(|(window, name)| look(Visit::new(window, format!("{picture}-{name}"))))
+}
 
 /// One visit.
 pub struct Visit {
     window: Window,
-    picture: &'static str,
+    picture: String,
     steps: Vec<Value>,
 }
 
@@ -46,8 +52,8 @@ struct Printed {
 
 impl Visit {
     /// A visit that leaves a picture of this name.
-    pub fn new(window: Window, picture: &'static str) -> Self {
-        Visit { window, picture, steps: Vec::new() }
+    pub fn new(window: Window, picture: impl Into<String>) -> Self {
+        Visit { window, picture: picture.into(), steps: Vec::new() }
     }
 
     /// Then evaluates an expression.
