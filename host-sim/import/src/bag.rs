@@ -21,7 +21,7 @@ mod sqlite;
 mod topics;
 mod transforms;
 
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use self::contents::{Counts, Topic};
@@ -83,7 +83,7 @@ impl Sample {
 /// A bag as read.
 struct Bag {
     path: PathBuf,
-    streams: HashMap<String, Stream>,
+    streams: BTreeMap<String, Stream>,
     /// All topics, including those that are not decoded, by name and type.
     topics: Vec<Topic>,
     /// Parts that were cut off.
@@ -99,7 +99,7 @@ pub fn recordings(
     sensors: &[RangeSensor],
     watch: impl Fn(usize),
 ) -> Vec<Result<Recording>> {
-    let mut fixed: HashMap<PathBuf, Vec<(String, Stream)>> = HashMap::new();
+    let mut fixed: BTreeMap<PathBuf, Vec<(String, Stream)>> = BTreeMap::new();
     let read = |(path, before): (&PathBuf, usize)| {
         watch(before);
         let mut bag = Bag::read(path, sensors)?;
@@ -140,7 +140,7 @@ pub fn usable(
 impl Bag {
     fn read(path: &Path, sensors: &[RangeSensor]) -> Result<Self> {
         let beams = ranges::beams(sensors);
-        let mut bag = Bag { path: path.into(), streams: HashMap::new(), topics: Vec::new(), truncated: Vec::new() };
+        let mut bag = Bag { path: path.into(), streams: BTreeMap::new(), topics: Vec::new(), truncated: Vec::new() };
         let mut counts = Counts::default();
         let mut messages = 0;
         for part in parts::of(path)? {
@@ -168,10 +168,7 @@ impl Bag {
                 bag.truncated.push(part);
             }
         }
-        // In the order of names, so that the same one is reported every time.
-        let mut streams: Vec<_> = bag.streams.iter_mut().collect();
-        streams.sort_by_key(|(name, _)| *name);
-        for (name, stream) in streams {
+        for (name, stream) in &mut bag.streams {
             sort_by_logging(&mut stream.samples).map_err(|why| Error::in_file(path, format!("{name}: {why}")))?;
         }
         bag.topics = counts.topics();
@@ -364,7 +361,7 @@ impl Bag {
 }
 
 /// Returns whether the stream `name` is made of messages of `topic`.
-fn uses(streams: &HashMap<String, Stream>, name: &str, topic: &str) -> bool {
+fn uses(streams: &BTreeMap<String, Stream>, name: &str, topic: &str) -> bool {
     is_of(name, topic) || streams[name].composed_of.iter().any(|part| is_of(part, topic))
 }
 

@@ -152,7 +152,9 @@ pub fn score(folder: &Path, watch: impl Fn(usize, usize) + Sync) -> Result<Score
             let robot = Robot::read(&folder.case(&case.case).join("robot.toml"))?;
             Ok(Opened { robot, sealed, answer, closed_on_fresh_runs })
         })
-        .collect::<Result<Vec<Opened>>>()?;
+        .collect::<Vec<Result<Opened>>>();
+    // The first of several errors, whatever the order in which threads met them.
+    let opened = opened.into_iter().collect::<Result<Vec<Opened>>>()?;
     Ok(Score::of(&opened))
 }
 

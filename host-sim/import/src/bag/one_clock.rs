@@ -4,7 +4,7 @@
 //! in its own time, which may run slower or faster than the recorder's clock. The clock of the poses decides; messages without
 //! a stamp of that clock are placed through the pairs of logging time and stamp.
 
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 
 use super::messages::Decoded;
 use super::topics::Topics;
@@ -39,7 +39,7 @@ struct Pairs(Vec<[f64; 2]>);
 
 impl OneClock {
     /// Determines the clock of the chosen topics.
-    pub fn of(streams: &HashMap<String, Stream>, topics: &Topics) -> Self {
+    pub fn of(streams: &BTreeMap<String, Stream>, topics: &Topics) -> Self {
         let pairs_of = |name: &str| Pairs::of(&streams[name].samples);
         let stamped: Vec<(&str, Pairs)> = topics.all().filter_map(|name| Some((name, pairs_of(name)?))).collect();
         let near_log = |pairs: &Pairs| pairs.distance_ms(|log_ms| log_ms) <= SAME_CLOCK_MS && pairs.has_rate_of_one();

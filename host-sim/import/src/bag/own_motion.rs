@@ -1,6 +1,6 @@
 //! What the robot measures of its own motion: joints of the wheels, and an IMU.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::BTreeMap;
 
 use glam::DVec3;
 
@@ -36,7 +36,7 @@ impl OwnStreams {
 /// # Errors
 /// When a topic or joint named by the user is missing.
 pub fn choose(
-    streams: &HashMap<String, Stream>,
+    streams: &BTreeMap<String, Stream>,
     choice: &Choice,
     commands: &str,
     unused: &mut Unused,
@@ -87,13 +87,12 @@ pub fn yaw_rates(samples: &[(f64, Decoded)]) -> (Vec<(f64, f64)>, Option<String>
 }
 
 fn gyro(
-    streams: &HashMap<String, Stream>,
+    streams: &BTreeMap<String, Stream>,
     named: Option<&str>,
     commands: &str,
     unused: &mut Unused,
 ) -> Result<Option<String>, String> {
-    let mut imus: Vec<&str> = of_type(streams, "/Imu").collect();
-    imus.sort_unstable();
+    let imus: Vec<&str> = of_type(streams, "/Imu").collect();
     if let Some(named) = named {
         let is_found = named == NONE || imus.contains(&named);
         let is_other = |name: &&str| *name != named;
@@ -166,11 +165,10 @@ fn stated(named: &[String], joints: &BTreeMap<&str, Vec<&str>>) -> Result<Vec<St
 }
 
 /// Returns the names of the joints by topic, sorted.
-fn joints_by_topic(streams: &HashMap<String, Stream>) -> BTreeMap<&str, Vec<&str>> {
+fn joints_by_topic(streams: &BTreeMap<String, Stream>) -> BTreeMap<&str, Vec<&str>> {
     let mut joints: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
     for (topic, joint) in of_type(streams, "/JointState").filter_map(|name| name.split_once(':')) {
         joints.entry(topic).or_default().push(joint);
     }
-    joints.values_mut().for_each(|names| names.sort_unstable());
     joints
 }

@@ -1,6 +1,6 @@
 //! The topics of range sensors, and their readings.
 
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 
 use super::Stream;
 use super::messages::{Beam, Decoded, Reading, of_part};
@@ -31,7 +31,7 @@ pub fn beams(sensors: &[RangeSensor]) -> Vec<Beam> {
 /// # Errors
 /// When a topic or sensor named by the user is missing, or a sensor could have several topics.
 pub fn choose(
-    streams: &HashMap<String, Stream>,
+    streams: &BTreeMap<String, Stream>,
     choice: &Choice,
     sensors: &[RangeSensor],
     commands: &str,
@@ -60,7 +60,7 @@ pub fn choose(
 /// Chooses a stream for each sensor that has one: that named by the user, a topic or frame with the sensor's name, the only topic
 /// that names no sensor, or the beam of a laser scanner.
 fn of_several(
-    streams: &HashMap<String, Stream>,
+    streams: &BTreeMap<String, Stream>,
     choice: &Choice,
     sensors: &[RangeSensor],
     commands: &str,
@@ -100,8 +100,7 @@ fn of_several(
     }
     for index in open {
         let suffix = of_part(&sensors[index].name);
-        let mut beams: Vec<&str> = of_type(streams, "/LaserScan").filter(|name| name.ends_with(&suffix)).collect();
-        beams.sort_unstable();
+        let beams: Vec<&str> = of_type(streams, "/LaserScan").filter(|name| name.ends_with(&suffix)).collect();
         if is_open[index] && !beams.is_empty() {
             ranges.push((index, one_of(&beams, &sensors[index], commands)?));
         }

@@ -1,6 +1,6 @@
 //! What the topics of a bag can be used for, and which of several is the best.
 
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 
 use super::Stream;
 
@@ -111,7 +111,7 @@ impl Role {
 }
 
 /// Returns the stream named by the user.
-pub fn selected(streams: &HashMap<String, Stream>, role: Role, name: &str) -> Result<String, String> {
+pub fn selected(streams: &BTreeMap<String, Stream>, role: Role, name: &str) -> Result<String, String> {
     let has_role = |schema: &str| Role::of(schema) == Some(role);
     match streams.get(name) {
         Some(stream) if has_role(&stream.schema) => Ok(name.to_owned()),
@@ -125,7 +125,7 @@ pub fn selected(streams: &HashMap<String, Stream>, role: Role, name: &str) -> Re
 
 /// Returns the best stream of a role, and how it was chosen if there are others; ties go to the robot whose commands are `near`.
 pub fn guess(
-    streams: &HashMap<String, Stream>,
+    streams: &BTreeMap<String, Stream>,
     role: Role,
     near: &str,
 ) -> Result<Option<(String, Option<String>)>, String> {
@@ -154,14 +154,13 @@ pub fn near_to<'a>(names: &[&'a str], near: &str) -> Option<&'a str> {
 }
 
 /// Returns the names of the streams whose type ends like this.
-pub fn of_type<'a>(streams: &'a HashMap<String, Stream>, end: &'static str) -> impl Iterator<Item = &'a str> {
+pub fn of_type<'a>(streams: &'a BTreeMap<String, Stream>, end: &'static str) -> impl Iterator<Item = &'a str> {
     streams.iter().filter(move |(_, stream)| stream.schema.ends_with(end)).map(|(name, _)| name.as_str())
 }
 
 /// Returns the names of the streams that match.
-pub fn list(streams: &HashMap<String, Stream>, matches: impl Fn(&Stream) -> bool) -> String {
-    let mut names: Vec<&str> = streams.iter().filter(|(_, s)| matches(s)).map(|(name, _)| name.as_str()).collect();
-    names.sort_unstable();
+pub fn list(streams: &BTreeMap<String, Stream>, matches: impl Fn(&Stream) -> bool) -> String {
+    let names: Vec<&str> = streams.iter().filter(|(_, s)| matches(s)).map(|(name, _)| name.as_str()).collect();
     shortened(&names)
 }
 

@@ -1,6 +1,6 @@
 //! Selects the topics of a bag that hold the robot's commands, poses, readings and own motion.
 
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 
 use super::Stream;
 use super::own_motion::{self, OwnStreams};
@@ -28,7 +28,11 @@ impl Topics {
     /// # Errors
     /// When a topic named by the user is missing, or commands are missing or ambiguous, or so are poses and no own motion stands in
     /// for them.
-    pub fn choose(streams: &HashMap<String, Stream>, choice: &Choice, sensors: &[RangeSensor]) -> Result<Self, String> {
+    pub fn choose(
+        streams: &BTreeMap<String, Stream>,
+        choice: &Choice,
+        sensors: &[RangeSensor],
+    ) -> Result<Self, String> {
         let mut guessed = Vec::new();
         let mut choose = |role, named: &Option<String>, near: &str| -> Result<Option<String>, String> {
             if let Some(name) = named {

@@ -3,7 +3,7 @@
 //! A localiser publishes the pose of `odom` in `map`, the base its pose in `odom`, and a static transform the axle on the base.
 //! As in tf, all are interpolated at one time.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::BTreeMap;
 
 use super::messages::Decoded;
 use super::roles::{is_body, is_fixed};
@@ -24,11 +24,9 @@ struct Link {
 
 /// Returns composed streams of robots in fixed frames, named like single transforms. Chains are omitted if there is such a
 /// single transform or only the robot's odometry moves. `selected` is the stream that the user names.
-pub fn chains(streams: &HashMap<String, Stream>, selected: Option<&str>) -> Vec<(String, Stream)> {
+pub fn chains(streams: &BTreeMap<String, Stream>, selected: Option<&str>) -> Vec<(String, Stream)> {
     let mut trees: BTreeMap<&str, BTreeMap<&str, Link>> = BTreeMap::new();
-    let mut names: Vec<&String> = streams.keys().collect();
-    names.sort_unstable();
-    for name in names {
+    for name in streams.keys() {
         let Some((topic, parent, child)) = frames(name) else { continue };
         let tree = trees.entry(topic.trim_end_matches("_static")).or_default();
         tree.entry(child).or_insert_with(|| Link {
@@ -97,7 +95,7 @@ fn is_pure_odometry(links: &[&Link]) -> bool {
 }
 
 /// Composes links at the times of the lowest moving one.
-fn composed(links: &[&Link], streams: &HashMap<String, Stream>) -> Option<Stream> {
+fn composed(links: &[&Link], streams: &BTreeMap<String, Stream>) -> Option<Stream> {
     let lowest = links.iter().find(|link| link.poses.len() > 1)?;
     let at = |ms: f64| {
         let down = links.iter().rev().map(|link| link.at(ms));
@@ -150,8 +148,8 @@ mod tests {
         (name.into(), Stream { schema: "tf2_msgs/msg/TFMessage".into(), samples, ..Stream::default() })
     }
 
-    fn localised() -> HashMap<String, Stream> {
-        HashMap::from([
+    fn localised() -> BTreeMap<String, Stream> {
+        BTreeMap::from([
             // The localiser moves the odometry frame by 10 cm in 100 ms.
             stream("/tf:map>odom", &[(0.0, pose(0.0, 0.0, FRAC_PI_2)), (100.0, pose(10.0, 0.0, FRAC_PI_2))]),
             stream("/tf:odom>base_footprint", &[(-5.0, pose(0.0, 0.0, 0.0)), (50.0, pose(20.0, 0.0, 0.0))]),
@@ -177,7 +175,7 @@ mod tests {
         let chains = chains(&localised(), Some("/tf:odom>base_link"));
         let parts = chains.iter().find(|(name, _)| name == "/tf:odom>base_link").map(|(_, chain)| &chain.composed_of);
         assert_eq!(parts.map(Vec::len), Some(2));
-        let markers = HashMap::from([
+        let markers = BTreeMap::from([
             stream("/tf:room>marker", &[(0.0, pose(0.0, 0.0, 0.0)), (50.0, pose(20.0, 0.0, 0.0))]),
             stream("/tf_static:marker>axle", &[(0.0, pose(-3.0, 0.0, 0.0))]),
         ]);
@@ -190,10 +188,11 @@ mod tests {
     fn cycles_and_pure_odometry_are_not_chains() {
         let still = pose(0.0, 0.0, 0.0);
         let two = [(0.0, still), (50.0, pose(20.0, 0.0, 0.0))];
-        let circle = HashMap::from([stream("/tf:a>base_link", &two), stream("/tf:b>a", &two), stream("/tf:a>b", &two)]);
+        let circle =
+            BTreeMap::from([stream("/tf:a>base_link", &two), stream("/tf:b>a", &two), stream("/tf:a>b", &two)]);
         assert!(chains(&circle, None).is_empty());
         let odometry =
-            HashMap::from([stream("/tf:odom>base_link", &two), stream("/tf_static:map>odom", &[(0.0, still)])]);
+            BTreeMap::from([stream("/tf:odom>base_link", &two), stream("/tf_static:map>odom", &[(0.0, still)])]);
         assert!(chains(&odometry, None).is_empty());
     }
 }

@@ -1,3 +1,0 @@
-//! The five quantities that a simulator predicts per step.
-
-pub use mindgap_foundations::channel::Channel;
