@@ -13,6 +13,7 @@ use super::patch_args::{self, Models, PatchOptions};
 use super::table;
 use super::{GAP, Run, kinds, progress, warn};
 use mindgap_applications::compare::coverage::{self, Script};
+use mindgap_applications::compare::layers;
 use mindgap_applications::compare::pairs::{self, Pair};
 use mindgap_applications::compare::sides;
 use mindgap_applications::compare::verify::{Verification, Verifier};
@@ -41,6 +42,7 @@ use mindgap_workers::program::Program;
 /// Each side can be folders of logs, ROS bags, or streams as CSV. To compare a robot before and after a repair, use the same
 /// command.
 #[derive(Args)]
+#[command(override_usage = "mindgap compare [OPTIONS] <SIM_RECORDING>... --real <RECORDING>...")]
 pub struct Compare {
     /// Recordings of the simulator.
     #[arg(value_name = "SIM_RECORDING", required = true)]
@@ -57,14 +59,14 @@ pub struct Compare {
     #[command(flatten)]
     patch: PatchOptions,
     /// Verify the patch: call COMMAND MODEL COMMANDS.csv OUT once per held-out run, to drive the simulator with the first
-    /// patched file. A patch that does not bring path ends nearer is withdrawn.
+    /// patched file. A patch that does not reduce the end-point error is withdrawn.
     #[arg(long, value_name = "COMMAND", requires = "patch")]
     verify: Option<String>,
     /// Timeout of each call of the --verify command, s.
     #[arg(long, value_name = "S", default_value_t = 600.0, value_parser = seconds)]
     command_timeout: f64,
-    /// Folder for the imported logs, the learned simulator and the recordings of --verify; if the simulator's recordings are
-    /// not enough, only for the commands to drive it with.
+    /// Folder for the imported logs, the learned simulator and the recordings of --verify. If the simulator's recordings are
+    /// insufficient, only the commands to drive it with are written there.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Random seed.
@@ -75,6 +77,10 @@ pub struct Compare {
     /// Write an HTML page.
     #[arg(long, value_name = "FILE")]
     html: Option<PathBuf>,
+    /// Write the robot's runs, the simulator with the same commands without and with the causes, and the residuals as a ROS 2
+    /// bag, for Foxglove, PlotJuggler or Rerun.
+    #[arg(long, value_name = "FILE")]
+    mcap: Option<PathBuf>,
     /// Exit with 3 unless the verdict is `no_gap`, for scripts.
     #[arg(long)]
     exit_code: bool,
@@ -104,7 +110,7 @@ impl Run for Compare {
     fn places(&self) -> Places {
         let inputs = self.simulator.iter().chain(&self.real).chain(&self.robot).chain(&self.scene);
         let places = Places::default().reading(inputs).writing(self.json.path(), kinds::REPORT);
-        self.patch.places(places).writing(&self.html, kinds::PAGE).filling(&self.out)
+        self.patch.places(places).writing(&self.html, kinds::PAGE).writing(&self.mcap, kinds::BAG).filling(&self.out)
     }
 
     fn exit_code(&self) -> u8 {
@@ -136,11 +142,15 @@ impl Run for Compare {
         let mut patched = self.patch.patched(&models, found);
         patch_args::write(&models, &patched)?;
         let verification = self.verified(&models, &mut patched, &answered)?;
+        let baseline = &request.baseline(&answered.logs)?;
+        if let Some(path) = &self.mcap {
+            files::write(path, layers::bag(found, baseline, &answered.logs, usable, &pairs))?;
+        }
         if let Some(path) = &self.html {
-            let baseline = &request.baseline(&answered.logs)?;
             let (logs, catalogue, source) = (&answered.logs, request.method.catalogue, self.source());
             let verification = verification.as_deref().unwrap_or_default();
-            let comparison = Comparison { pairs: &pairs, verification, ..patch_args::on_page(&patched) };
+            let simulator = Some(usable);
+            let comparison = Comparison { pairs: &pairs, simulator, verification, ..patch_args::on_page(&patched) };
             files::write(path, page(&Subject { findings: found, logs, baseline, catalogue, source, comparison })?)?;
         }
         let mut text = text::diagnosis(&found.diagnosis);

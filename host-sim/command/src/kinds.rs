@@ -6,6 +6,7 @@ use serde::de::IgnoredAny;
 
 use mindgap_applications::bundle::is_bundle;
 use mindgap_files::places::Kind;
+use mindgap_import::ros2_bag;
 use mindgap_workers::checkpoint;
 
 /// A simulator file.
@@ -31,6 +32,8 @@ pub const PAGE: Kind =
     Kind { name: "a page", is_own: |content| text(content).contains(r#"<meta name="generator" content="mindgap">"#) };
 /// Logs with their diagnosis, to be sent.
 pub const BUNDLE: Kind = Kind { name: "a bundle", is_own: is_bundle };
+/// A ROS 2 bag written by this program.
+pub const BAG: Kind = Kind { name: "a bag of mindgap", is_own: ros2_bag::is_own };
 /// The formula of a diagnosis.
 pub const FORMULA: Kind = Kind { name: "a formula", is_own: |content| text(content).starts_with(FORMULA_SIGN) };
 /// First line of a formula's file. Effects without it were written by hand and are not replaced.

@@ -5,6 +5,7 @@
 //! - [`brick`]: brick logs and camera tracks, aligned by [`clocks`].
 //! - [`streams`] and [`bag`]: commands, poses and readings as tables or as a bag of ROS. Both become [`recording`]s, which
 //!   [`assemble`] combines; [`draft`] writes the known dimensions of the robot and marks the missing ones.
+//! - [`ros2_bag`] writes bags: commands for a simulator, and drives to look at in other tools.
 //! - [`left_out`]: everything that is not used, with the reason. [`contents`]: what a recording holds.
 //!
 //! Wherever two sources meet, [`scale_check`] compares their motion in one unit. Reports list everything that was guessed,
@@ -37,6 +38,7 @@ mod quantities;
 mod range_sensors;
 pub mod recording;
 pub mod report;
+pub mod ros2_bag;
 mod rotation;
 pub mod scale_check;
 mod spatial_pose;
@@ -45,7 +47,6 @@ pub mod streams;
 mod table;
 mod timestamps;
 pub mod track;
-pub mod twist_bag;
 pub mod units;
 mod upright;
 mod words;

@@ -21,7 +21,7 @@ pub struct Replay {
     /// The runs.
     runs: Vec<ReplayedRun>,
     /// Who drives in them; the others are compared with the first.
-    kinds: &'static [Kind],
+    kinds: Vec<Kind>,
     robot: Body,
     /// The room in which they drive.
     #[serde(skip)]
@@ -32,7 +32,7 @@ pub struct Replay {
 }
 
 /// A robot, real or simulated.
-#[derive(Serialize)]
+#[derive(Clone, Copy, Serialize)]
 pub struct Kind {
     /// Its name in style sheets and scripts.
     pub id: &'static str,
@@ -46,6 +46,9 @@ pub const ROBOT: Kind = Kind { id: "robot", name: "the robot, as logged" };
 pub const SIMULATOR: Kind = Kind { id: "simulator", name: "the simulator" };
 /// The simulator with effects.
 pub const WITH_EFFECTS: Kind = Kind { id: "effects", name: "the simulator with the effects" };
+
+/// The user's own simulator, as it was recorded.
+pub const RECORDED: Kind = Kind { id: "recorded", name: "the simulator, as recorded" };
 
 /// One run, row by row.
 #[derive(Serialize)]
@@ -120,10 +123,15 @@ impl Track {
 
 impl Replay {
     /// Runs of a robot in a room, `of` all.
-    pub fn new(robot: &Robot, room: Room, kinds: &'static [Kind], runs: Vec<ReplayedRun>, of: usize) -> Self {
+    pub fn new(robot: &Robot, room: Room, kinds: Vec<Kind>, runs: Vec<ReplayedRun>, of: usize) -> Self {
         let sensor = robot.ultrasonic.map_or([0.0; 3], |sensor| [sensor.x_cm, sensor.y_cm, sensor.yaw_deg]);
         let body = Body { radius_cm: robot.body_radius_cm, sensor };
         Replay { runs, kinds, robot: body, room, of }
+    }
+
+    /// Whether a robot of this kind drives in it.
+    pub fn shows(&self, kind: &Kind) -> bool {
+        self.kinds.iter().any(|shown| shown.id == kind.id)
     }
 
     /// The script that moves it.
@@ -152,7 +160,7 @@ impl Replay {
                         @for (i, run) in self.runs.iter().enumerate() { option value=(i) { (run.name) } }
                     }
                 }
-                @for kind in self.kinds {
+                @for kind in &self.kinds {
                     label {
                         input type="checkbox" data-show=(kind.id) checked;
                         span.swatch.(kind.id) {} (kind.name)
@@ -175,7 +183,7 @@ impl Replay {
                         }
                     }
                     tbody {
-                        @for kind in self.kinds {
+                        @for kind in &self.kinds {
                             tr data-kind=(kind.id) {
                                 th scope="row" { span.swatch.(kind.id) {} " " (kind.name) }
                                 @for field in ["place", "heading", "echo"] { td.n data-field=(field) {} }

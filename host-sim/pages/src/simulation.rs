@@ -214,7 +214,7 @@ fn replay(subject: &Subject, shown: &[usize]) -> Replay {
             tracks: BTreeMap::from([(DRIVEN.id, rollout.path.iter().map(moment).collect::<Vec<_>>().into())]),
         }
     };
-    Replay::new(robot, room, &[DRIVEN], shown.iter().map(run).collect(), rollouts.runs.len())
+    Replay::new(robot, room, vec![DRIVEN], shown.iter().map(run).collect(), rollouts.runs.len())
 }
 
 fn source(subject: &Subject) -> Markup {

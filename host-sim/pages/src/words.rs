@@ -2,9 +2,9 @@
 
 use mindgap_diagnosis::Diagnosis;
 use mindgap_diagnosis::budget::{SCATTER, UNEXPLAINED};
-use mindgap_diagnosis::channel::Channel;
 use mindgap_diagnosis::verdict::Verdict;
 pub use mindgap_figures::report::style::number;
+use mindgap_foundations::channel::Channel;
 use mindgap_models::effects::Effect;
 
 /// A part of a gap in words.

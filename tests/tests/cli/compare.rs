@@ -4,6 +4,7 @@ use std::fs;
 
 use mindgap_tests::command::{Outcome, Sandbox};
 use mindgap_tests::range_sensors::add;
+use mindgap_tests::ros_bags::messages;
 use serde_json::Value;
 
 use super::schemas::is_described;
@@ -95,6 +96,48 @@ fn a_patch_is_proved_by_held_out_runs_or_withdrawn() {
     assert_eq!((none.code, none.err.lines().count()), (1, 1), "{}", none.err);
     assert!(none.err.contains("was not written by the simulator's command"), "{}", none.err);
     assert_eq!(sandbox.text("tries").lines().count(), 2, "a failure is repeated once");
+}
+
+#[test]
+fn layers_of_both_sides_are_a_bag_that_the_official_reader_takes() {
+    let sandbox = Sandbox::new();
+    sandbox.run("record --out logs --runs 12 --steps 40 --seed 2");
+    sandbox.run("record --out real --runs 12 --steps 40 --seed 2 --effect track_width=0.8");
+    let said = sandbox.run("compare logs --real real --mcap layers.mcap --html gap.html --json found.json");
+    let pairs = sandbox.json("found.json")["pairs"].as_array().map_or(0, Vec::len);
+    assert!(pairs > 0, "{said}");
+    assert!(sandbox.text("gap.html").contains("the simulator, as recorded"));
+
+    let layers = messages(&sandbox.path().join("layers.mcap"));
+    let runs = &layers["/run"];
+    assert_eq!((runs.len(), &runs[11][1]), (12, &Value::from("run-011")));
+    let logs = sandbox.logs("real");
+    let first = logs.runs[0].rows.at(0).pose.expect("a pose").position_cm;
+    let numbers = |topic: &str| -> Vec<Vec<f64>> {
+        let of_message = |message: &Vec<Value>| message.iter().filter_map(Value::as_f64).collect();
+        layers.get(topic).unwrap_or_else(|| panic!("{topic}: {:?}", layers.keys())).iter().map(of_message).collect()
+    };
+    let robot = numbers("/robot/pose");
+    assert_eq!(robot.len(), logs.runs.iter().flat_map(|run| &run.rows).filter(|row| row.pose.is_some()).count());
+    assert!((robot[0][1] - first.x / 100.0).abs() < 1e-9 && (robot[0][2] - first.y / 100.0).abs() < 1e-9);
+    let mut ends_m = Vec::new();
+    for simulator in ["simulator", "simulator_with_causes", "recorded_simulator"] {
+        let [simulated, residuals] =
+            [format!("/{simulator}/pose"), format!("/residual/{simulator}")].map(|topic| numbers(&topic));
+        let mut distances_m = Vec::new();
+        for residual in &residuals {
+            let at = |poses: &[Vec<f64>]| poses.iter().find(|pose| pose[0] == residual[0]).cloned().expect("a pose");
+            let (robot, simulated) = (at(&robot), at(&simulated));
+            let apart_m = libm::hypot(robot[1] - simulated[1], robot[2] - simulated[2]);
+            assert!((libm::hypot(residual[1], residual[2]) - apart_m).abs() < 1e-9, "{simulator}: {residual:?}");
+            distances_m.push(apart_m);
+        }
+        assert!(distances_m[0] < 1e-9, "{simulator} begins at the robot");
+        assert!(layers[&format!("/{simulator}/path")][0].len() > 100, "a path of a whole run");
+        ends_m.push(distances_m.iter().sum::<f64>() / distances_m.len() as f64);
+    }
+    assert!(ends_m[1] < 0.5 * ends_m[0], "the cause brings the simulator nearer: {ends_m:?}");
+    sandbox.run("compare logs --real real --mcap layers.mcap");
 }
 
 #[test]

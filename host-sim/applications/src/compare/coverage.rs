@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use mindgap_import::twist_bag;
+use mindgap_import::ros2_bag::{Bag, Content};
 use mindgap_logs::{Logs, Robot};
 
 /// Fewer steps than this teach no networks.
@@ -66,12 +66,16 @@ impl Script {
 
     /// Returns it as a ROS 2 bag of `cmd_vel`, by the robot's full speed and track.
     pub fn to_bag(&self, robot: &Robot) -> Vec<u8> {
-        let twist = |(t_ms, [left, right]): &(f64, [f64; 2])| {
-            let m_s = |command: f64| command / 100.0 * robot.full_speed_cm_s / 100.0;
-            let (left, right) = (m_s(*left), m_s(*right));
-            (*t_ms, [(left + right) / 2.0, (right - left) / (robot.track_cm / 100.0)])
-        };
-        twist_bag::of("/cmd_vel", &self.0.iter().map(twist).collect::<Vec<_>>())
+        let mut bag = Bag::default();
+        for (t_ms, wheels) in &self.0 {
+            let [left_cm_s, right_cm_s] = wheels.map(|command| command / 100.0 * robot.full_speed_cm_s);
+            let twist = Content::Twist {
+                forward_cm_s: (left_cm_s + right_cm_s) / 2.0,
+                turn_rad_s: (right_cm_s - left_cm_s) / robot.track_cm,
+            };
+            bag.write("/cmd_vel", *t_ms, &twist);
+        }
+        bag.finish()
     }
 }
 

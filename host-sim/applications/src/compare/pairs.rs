@@ -4,6 +4,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use mindgap_foundations::geometry::Pose;
+use mindgap_learning::evaluation::replay::Moment;
 use mindgap_logs::{Logs, Run};
 
 /// A run of the robot and one of the simulator with the same commands.
@@ -31,10 +32,33 @@ pub fn pairs(simulator: &Logs, real: &Logs) -> Vec<Pair> {
     real.runs.iter().filter_map(|run| simulator.runs.iter().find_map(|other| pair(run, other))).collect()
 }
 
+/// Returns what the simulator's recording of a pair shows at each row of the robot's run, moved to begin where the robot was first
+/// seen; empty moments where the recording has no row.
+pub fn alongside(real: &Run, simulated: &Run, step_ms: f64) -> Vec<Moment> {
+    let (Some(first), Some(recorded_first)) = (real.rows.first(), simulated.rows.first()) else { return Vec::new() };
+    let start = real.rows.iter().find_map(|row| row.pose);
+    let since_start = from_start(simulated);
+    let times_ms: Vec<f64> = simulated.rows.iter().map(|row| row.t_ms - recorded_first.t_ms).collect();
+    let at = |t_ms: f64| {
+        let k = times_ms.partition_point(|other_ms| *other_ms < t_ms - step_ms / 2.0);
+        let k = Some(k).filter(|k| times_ms.get(*k).is_some_and(|other_ms| *other_ms <= t_ms + step_ms / 2.0))?;
+        let pose = since_start[k].and_then(|pose| Some(start?.compose(&pose)));
+        Some(Moment { pose, echo_cm: simulated.rows.at(k).echo_cm })
+    };
+    real.rows.iter().map(|row| at(row.t_ms - first.t_ms).unwrap_or_default()).collect()
+}
+
 /// Returns the poses of a run, each relative to the first; `None` where the robot was not seen.
-pub fn from_start(run: &Run) -> Vec<Option<Pose>> {
+fn from_start(run: &Run) -> Vec<Option<Pose>> {
     let start = run.rows.iter().find_map(|row| row.pose);
     run.rows.iter().map(|row| Some(start?.relative(&row.pose?))).collect()
+}
+
+impl Pair {
+    /// Returns the simulator's run among its logs.
+    pub fn simulated_run<'a>(&self, simulator: &'a Logs) -> Option<&'a Run> {
+        simulator.runs.iter().find(|run| run.name == self.simulated)
+    }
 }
 
 fn pair(real: &Run, simulated: &Run) -> Option<Pair> {

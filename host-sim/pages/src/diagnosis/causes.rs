@@ -5,12 +5,12 @@ use maud::{Markup, html};
 use super::Subject;
 use crate::document::{Section, chart, table};
 use crate::words;
-use mindgap_diagnosis::channel::Channel;
 use mindgap_diagnosis::explain::evidence::Evidence;
 use mindgap_diagnosis::explain::profile::{Bin, ResidualProfile};
 use mindgap_diagnosis::scope::of_sensor;
 use mindgap_diagnosis::verdict::NamedEffect;
 use mindgap_figures::pictures;
+use mindgap_foundations::channel::Channel;
 use mindgap_models::effects::Effect;
 
 /// The causes, and what none of them explains; `None` where there is no gap.

@@ -5,6 +5,7 @@ use maud::{Markup, html};
 use crate::document::{Section, open_table};
 use mindgap_applications::compare::pairs::Pair;
 use mindgap_applications::compare::verify::Verification;
+use mindgap_logs::{Logs, Run};
 use mindgap_patch::patch::{NotPatched, Patch};
 
 /// A comparison of a user's own simulator with the robot, beyond its diagnosis.
@@ -12,6 +13,8 @@ use mindgap_patch::patch::{NotPatched, Patch};
 pub struct Comparison<'a> {
     /// Runs of both sides with the same commands.
     pub pairs: &'a [Pair],
+    /// The runs of the simulator, if they were recorded.
+    pub simulator: Option<&'a Logs>,
     /// Changed tags.
     pub patches: &'a [Patch],
     /// Causes that have no tag in a model file.
@@ -20,9 +23,16 @@ pub struct Comparison<'a> {
     pub verification: &'a [Verification],
 }
 
+impl<'a> Comparison<'a> {
+    /// Returns the simulator's recording of the commands of a robot's run.
+    pub fn recorded(&self, run: &Run) -> Option<&'a Run> {
+        self.pairs.iter().find(|pair| pair.real == run.name)?.simulated_run(self.simulator?)
+    }
+}
+
 /// Returns the sections that have something to show.
 pub fn sections(comparison: &Comparison) -> Vec<Section> {
-    let Comparison { pairs, patches, not_patched, verification } = comparison;
+    let Comparison { pairs, patches, not_patched, verification, .. } = comparison;
     let mut sections = Vec::new();
     if !patches.is_empty() || !not_patched.is_empty() {
         sections.push(Section {
@@ -44,7 +54,7 @@ pub fn sections(comparison: &Comparison) -> Vec<Section> {
         };
         let header = ["robot's run", "simulator's run", "mean distance (cm)", "distance of ends (cm)"];
         let body = html! {
-            p { "These runs drove the same commands. They are aligned at their starts." }
+            p { "These runs drove the same commands. They are aligned at their starts; the replay shows both." }
             (open_table(header, &pairs.iter().map(row).collect::<Vec<_>>()))
         };
         sections.push(Section { id: "pairs", title: "Run by run", body });

@@ -6,12 +6,13 @@ use maud::html;
 
 use super::Subject;
 use crate::document::{Section, chart, table};
-use crate::replay::{ROBOT, Replay, ReplayedRun, SIMULATOR, WITH_EFFECTS, sampled};
+use crate::replay::{RECORDED, ROBOT, Replay, ReplayedRun, SIMULATOR, WITH_EFFECTS, sampled};
 use crate::words;
+use mindgap_applications::compare::pairs::alongside;
 use mindgap_diagnosis::diagnosis::Diagnosis;
 use mindgap_figures::pictures;
 use mindgap_figures::report::room::Room;
-use mindgap_learning::evaluation::replay::{PUT_BACK_STEPS, Player};
+use mindgap_learning::evaluation::replay::{Moment, PUT_BACK_STEPS, Player};
 use mindgap_logs::{Row, Run};
 
 /// How far the longest paths go astray, in a sentence; `None` where no path was compared.
@@ -74,6 +75,9 @@ pub fn section(replay: Option<&Replay>, diagnosis: &Diagnosis) -> Section {
                 " Simulated robots start at the first logged position of the real one and return to it every "
                 (PUT_BACK_STEPS)
                 " steps. Walls do not stop them."
+                @if replay.shows(&RECORDED) {
+                    " Where the simulator's recording has the same commands, it is moved to the robot's start and shown too."
+                }
             }
             (replay.markup())
         },
@@ -84,7 +88,7 @@ pub fn section(replay: Option<&Replay>, diagnosis: &Diagnosis) -> Section {
 
 /// The replay of the runs; `None` where the robot was never seen.
 pub fn replay(subject: &Subject, room: Room) -> Option<Replay> {
-    let Subject { findings, logs, baseline, .. } = subject;
+    let Subject { findings, logs, baseline, comparison, .. } = subject;
     let seen: Vec<&Run> = logs.runs.iter().filter(|run| run.rows.iter().any(|row| row.pose.is_some())).collect();
     if seen.is_empty() {
         return None;
@@ -93,6 +97,8 @@ pub fn replay(subject: &Subject, room: Room) -> Option<Replay> {
     let before = baseline.chain();
     let found = findings.with_formula();
     let after = baseline.chain_with(&found);
+    let chosen = sampled(&seen.iter().map(|run| run.rows.len()).collect::<Vec<_>>());
+    let is_recorded = chosen.iter().any(|(number, _)| comparison.recorded(seen[*number]).is_some());
     let run = |(number, rows): (usize, usize)| {
         let whole = seen[number];
         let run = Run { name: whole.name.clone(), rows: whole.rows.beginning(rows) };
@@ -103,6 +109,10 @@ pub fn replay(subject: &Subject, room: Room) -> Option<Replay> {
         if !found.is_empty() {
             tracks.insert(WITH_EFFECTS.id, player.simulated(&after, &run).into());
         }
+        if is_recorded {
+            let recorded = comparison.recorded(whole).map(|recorded| alongside(&run, recorded, logs.robot.step_ms));
+            tracks.insert(RECORDED.id, recorded.unwrap_or_else(|| vec![Moment::default(); rows]).into());
+        }
         let cut = rows < whole.rows.len();
         ReplayedRun {
             name: if cut { format!("{} (first {rows} rows)", run.name) } else { run.name.clone() },
@@ -111,10 +121,10 @@ pub fn replay(subject: &Subject, room: Room) -> Option<Replay> {
             tracks,
         }
     };
-    let rows: Vec<usize> = seen.iter().map(|run| run.rows.len()).collect();
-    let runs = sampled(&rows).into_iter().map(run).collect();
-    let kinds = if found.is_empty() { &[ROBOT, SIMULATOR][..] } else { &[ROBOT, SIMULATOR, WITH_EFFECTS][..] };
-    Some(Replay::new(&logs.robot, room, kinds, runs, logs.runs.len()))
+    let runs = chosen.iter().copied().map(run).collect();
+    let kinds =
+        [Some(ROBOT), Some(SIMULATOR), (!found.is_empty()).then_some(WITH_EFFECTS), is_recorded.then_some(RECORDED)];
+    Some(Replay::new(&logs.robot, room, kinds.into_iter().flatten().collect(), runs, logs.runs.len()))
 }
 
 fn commands(row: Row) -> String {

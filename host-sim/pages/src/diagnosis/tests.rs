@@ -6,7 +6,6 @@ use super::*;
 use crate::made_up::{EVIL, logs};
 use mindgap_diagnosis::account::{ChannelReduction, GapReduction, Reduction, RunnerUp};
 use mindgap_diagnosis::budget::SCATTER;
-use mindgap_diagnosis::channel::Channel;
 use mindgap_diagnosis::confirm::unconfirmed::Unconfirmed;
 use mindgap_diagnosis::excitation::Detectable;
 use mindgap_diagnosis::explain::evidence::Evidence;
@@ -17,13 +16,23 @@ use mindgap_diagnosis::formula::Statement;
 use mindgap_diagnosis::outliers::Outliers;
 use mindgap_diagnosis::scope::{NotCompared, Scope};
 use mindgap_diagnosis::verdict::NamedEffect;
+use mindgap_foundations::channel::Channel;
 use mindgap_foundations::schema_number::SchemaNumber;
 use mindgap_learning::evaluation::paths::PathError;
 use mindgap_logs::inspection::{Finding, Handling, Part as Inspected};
 use mindgap_models::simulator::kinematic;
 
-static EVIL_EFFECT: Effect =
-    Effect { id: EVIL, name: EVIL, what: EVIL, check: EVIL, place: None, needs_known_robot: false, variants: &[] };
+static EVIL_EFFECT: Effect = Effect {
+    id: EVIL,
+    name: EVIL,
+    what: EVIL,
+    in_logs: EVIL,
+    imitated_by: &[],
+    check: EVIL,
+    place: None,
+    needs_known_robot: false,
+    variants: &[],
+};
 
 fn no_gap() -> Findings {
     let diagnosis = Diagnosis {

@@ -4,7 +4,6 @@ use super::budget;
 use crate::words;
 use mindgap_diagnosis::Diagnosis;
 use mindgap_diagnosis::account::{ChannelReduction, GapReduction, Reduction};
-use mindgap_diagnosis::channel::Channel;
 use mindgap_diagnosis::confirm::unconfirmed::Unconfirmed;
 use mindgap_diagnosis::excitation::Detectable;
 use mindgap_diagnosis::explain::profile::ResidualProfile;
@@ -15,6 +14,7 @@ use mindgap_diagnosis::propose::Experiment;
 use mindgap_diagnosis::scope::of_sensor;
 use mindgap_diagnosis::sessions;
 use mindgap_diagnosis::verdict::{NamedEffect, Verdict};
+use mindgap_foundations::channel::Channel;
 use mindgap_foundations::statistics::rounding::three_digits;
 use mindgap_learning::evaluation::final_position::FinalPositionErrors;
 
