@@ -4,12 +4,12 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::budget::{Budget, budget};
-use super::channel::Channel;
 use super::confirm::Confirmed;
 use super::fit::FitContext;
-use super::ledger::Ledger;
+use super::gap_parts::GapParts;
 use super::outliers::Outliers;
 use super::sample::RowSet;
+use mindgap_foundations::channel::Channel;
 use mindgap_foundations::statistics::{bootstrap, rounding};
 use mindgap_learning::evaluation::paths::PathError;
 
@@ -88,18 +88,18 @@ struct Tally {
 
 /// Accounts for a gap on some rows. Effects that are not among the `named` count as unexplained.
 pub fn account(found: &Confirmed, named: &[&'static str], context: &FitContext, rows: RowSet) -> Account {
-    let ledger = Ledger::of(found, rows);
-    let budget = budget(named, &ledger, context.seed);
-    Account { reduction: reduction(found, &ledger, context, rows), budget, reducible: ledger.reducible() }
+    let gap = GapParts::of(found, rows);
+    let budget = budget(named, &gap, context.seed);
+    Account { reduction: reduction(found, &gap, context, rows), budget, reducible: gap.reducible() }
 }
 
 /// Returns `None` if these rows show no reducible gap.
-fn reduction(found: &Confirmed, ledger: &Ledger, context: &FitContext, rows: RowSet) -> Option<GapReduction> {
+fn reduction(found: &Confirmed, gap: &GapParts, context: &FitContext, rows: RowSet) -> Option<GapReduction> {
     let seed = context.seed;
-    let gained = ledger.gained();
+    let gained = gap.gained();
     let tally = |channels: &[Channel]| Tally {
         gained: gained.only(channels).by_block(),
-        remaining: ledger.unexplained.only(channels).by_block(),
+        remaining: gap.unexplained.only(channels).by_block(),
     };
     let steps = rows.sample().rows.len() as f64;
     let all = tally(&Channel::ALL);
@@ -110,7 +110,7 @@ fn reduction(found: &Confirmed, ledger: &Ledger, context: &FitContext, rows: Row
         Some(ChannelReduction { channel, reduction: tally.reduction(steps, seed).filter(|_| is_plain)?, sensor: None })
     };
     let runner_up = found.runner_up().map(|fit| {
-        let gained = ledger.gained_by(fit, found, rows.sample());
+        let gained = gap.gained_by(fit, found, rows.sample());
         RunnerUp { id: fit.ids().join("+"), reducible_closed: gained / all.reducible() }
     });
     let paths = found.paths.iter().map(|paths| paths.error).collect();
@@ -220,8 +220,8 @@ mod tests {
         found.chosen.values = vec![0.9];
         found.fits.null = Fitted::null(&context);
         let rows = RowSet::HeldOut(&held_out);
-        let ledger = Ledger::of(&found, rows);
-        let reduction = reduction(&found, &ledger, &context, rows).expect("a gap");
+        let gap = GapParts::of(&found, rows);
+        let reduction = reduction(&found, &gap, &context, rows).expect("a gap");
         let nats = log_density(0, 0.0, 1.0) - log_density(0, 0.9, 1.0);
         let Reduction { before, after, reducible_closed, .. } = reduction.whole;
         assert!(

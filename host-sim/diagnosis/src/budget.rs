@@ -4,7 +4,7 @@
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::ledger::Ledger;
+use super::gap_parts::GapParts;
 use mindgap_foundations::statistics::{bootstrap, rounding};
 
 /// A part of the gap.
@@ -37,11 +37,11 @@ pub const SCATTER: &str = "scatter";
 /// The id of structure that no named effect explains.
 pub const UNEXPLAINED: &str = "unexplained";
 
-/// Divides a gap into the named effects in the order of the ledger, noise, and the unexplained part, which includes effects that
+/// Divides a gap into the named effects in the order of its parts, noise, and the unexplained part, which includes effects that
 /// are not named. Returns nothing if there is nothing to divide.
-pub fn budget(named: &[&'static str], ledger: &Ledger, seed: u64) -> Budget {
-    let (mut parts, mut unexplained) = (Vec::new(), ledger.unexplained.by_block());
-    for (id, scores) in &ledger.effects {
+pub fn budget(named: &[&'static str], gap: &GapParts, seed: u64) -> Budget {
+    let (mut parts, mut unexplained) = (Vec::new(), gap.unexplained.by_block());
+    for (id, scores) in &gap.effects {
         let gained = scores.by_block();
         if named.contains(id) {
             parts.push((*id, gained));
@@ -49,7 +49,7 @@ pub fn budget(named: &[&'static str], ledger: &Ledger, seed: u64) -> Budget {
             unexplained.iter_mut().zip(gained).for_each(|(u, g)| *u += g);
         }
     }
-    parts.push((SCATTER, ledger.noise.by_block()));
+    parts.push((SCATTER, gap.noise.by_block()));
     parts.push((UNEXPLAINED, unexplained));
     let parts: Vec<(&str, Vec<f64>)> = parts.into_iter().map(|(id, gained)| (id, zero_if_negative(gained))).collect();
     let mut whole = vec![0.0; parts[0].1.len()];
@@ -77,13 +77,13 @@ fn zero_if_negative(by_block: Vec<f64>) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::channel::Channel;
     use crate::test_support::block_scores;
+    use mindgap_foundations::channel::Channel;
 
-    fn ledger(effects: &[(&'static str, [f64; 4])], noise: [f64; 4], unexplained: [f64; 4]) -> Ledger {
+    fn gap(effects: &[(&'static str, [f64; 4])], noise: [f64; 4], unexplained: [f64; 4]) -> GapParts {
         let scores = |by_block: &[f64; 4]| block_scores(Channel::Forward, by_block);
         let effects = effects.iter().map(|(id, by_block)| (*id, scores(by_block))).collect();
-        Ledger::made_up(effects, scores(&noise), scores(&unexplained))
+        GapParts::made_up(effects, scores(&noise), scores(&unexplained))
     }
 
     fn shares(parts: &[Part]) -> Vec<(&str, f64)> {
@@ -92,34 +92,31 @@ mod tests {
 
     #[test]
     fn shares_are_proportional_to_nats() {
-        let ledger = ledger(&[("slope", [3.0; 4]), ("latency", [4.0; 4])], [1.0; 4], [2.0; 4]);
-        let both = budget(&["latency", "slope"], &ledger, 1).parts;
+        let gap = gap(&[("slope", [3.0; 4]), ("latency", [4.0; 4])], [1.0; 4], [2.0; 4]);
+        let both = budget(&["latency", "slope"], &gap, 1).parts;
         assert_eq!(shares(&both), [("slope", 0.3), ("latency", 0.4), (SCATTER, 0.1), (UNEXPLAINED, 0.2)]);
         // Every block has the same shares, and so has every resample of blocks.
         assert!(both.iter().all(|part| part.ci95.iter().all(|end| (end - part.share).abs() < 1e-12)));
-        assert_eq!(shares(&budget(&["slope"], &ledger, 1).parts), [("slope", 0.3), (SCATTER, 0.1), (UNEXPLAINED, 0.6)]);
-        assert_eq!(shares(&budget(&[], &ledger, 1).parts), [(SCATTER, 0.1), (UNEXPLAINED, 0.9)]);
+        assert_eq!(shares(&budget(&["slope"], &gap, 1).parts), [("slope", 0.3), (SCATTER, 0.1), (UNEXPLAINED, 0.6)]);
+        assert_eq!(shares(&budget(&[], &gap, 1).parts), [(SCATTER, 0.1), (UNEXPLAINED, 0.9)]);
     }
 
     #[test]
     fn part_that_loses_has_no_share() {
-        let ledger = ledger(&[("slope", [3.0; 4])], [1.0; 4], [-2.0; 4]);
-        assert_eq!(
-            shares(&budget(&["slope"], &ledger, 1).parts),
-            [("slope", 0.75), (SCATTER, 0.25), (UNEXPLAINED, 0.0)]
-        );
+        let gap = gap(&[("slope", [3.0; 4])], [1.0; 4], [-2.0; 4]);
+        assert_eq!(shares(&budget(&["slope"], &gap, 1).parts), [("slope", 0.75), (SCATTER, 0.25), (UNEXPLAINED, 0.0)]);
     }
 
     #[test]
     fn empty_gap_has_no_parts() {
-        assert_eq!(budget(&[], &ledger(&[], [0.0; 4], [-1.0; 4]), 1).parts, []);
+        assert_eq!(budget(&[], &gap(&[], [0.0; 4], [-1.0; 4]), 1).parts, []);
     }
 
     /// Half of the blocks show only an effect and half only noise: resamples range from none to all.
     #[test]
     fn interval_is_that_of_resampled_blocks() {
-        let ledger = ledger(&[("slope", [2.0, 0.0, 2.0, 0.0])], [0.0, 2.0, 0.0, 2.0], [0.0; 4]);
-        let [low, high] = budget(&["slope"], &ledger, 1).parts[0].ci95;
+        let gap = gap(&[("slope", [2.0, 0.0, 2.0, 0.0])], [0.0, 2.0, 0.0, 2.0], [0.0; 4]);
+        let [low, high] = budget(&["slope"], &gap, 1).parts[0].ci95;
         assert_eq!([low, high], [0.0, 1.0]);
     }
 }

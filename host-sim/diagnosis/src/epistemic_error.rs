@@ -6,12 +6,12 @@
 //! the training logs as the prior (Bishop 2006, Pattern Recognition and Machine Learning, section 3.3). Only directions are fitted
 //! in which the training logs carry less information than these rows; everything that was learned better stays a yardstick.
 
-use super::channel::Channel;
 use super::explanation::Explanation;
 use super::fit::{FitContext, Fitted};
 use super::residuals::{log_likelihoods, subtract, usual_noise};
 use super::sample::HoldOut;
 use super::scores::Scores;
+use mindgap_foundations::channel::Channel;
 use mindgap_foundations::statistics::summary::root_mean_square;
 
 /// The epistemic error in one motion channel, as rows of other folds predict it.

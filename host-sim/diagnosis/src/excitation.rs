@@ -6,10 +6,10 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::calibration::Calibration;
-use super::channel::Channel;
 use super::fit::{FitContext, Fitted};
 use super::sample::Sample;
 use super::scores::Scores;
+use mindgap_foundations::channel::Channel;
 use mindgap_learning::evaluation::observations::Observation;
 use mindgap_logs::Robot;
 use mindgap_models::effects::{Candidate, Variant};

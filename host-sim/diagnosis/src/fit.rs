@@ -11,7 +11,6 @@ use problem::Problem;
 use rayon::prelude::*;
 
 use super::calibration::Calibration;
-use super::channel::Channel;
 use super::explanation::Explanation;
 use super::hypothesis::Hypothesis;
 use super::method::Method;
@@ -20,6 +19,7 @@ use super::sample::{HoldOut, Identification, Sample};
 use super::scores::Scores;
 use super::sensor_cache::FacedRows;
 use super::witnesses::Witnesses;
+use mindgap_foundations::channel::Channel;
 use mindgap_foundations::statistics::maximise::Point;
 use mindgap_foundations::statistics::summary::student_95;
 use mindgap_logs::Robot;
@@ -226,7 +226,8 @@ impl Fitted {
         self.scores.total_of(channel) - other.scores.total_of(channel)
     }
 
-    /// Returns what chance leaves open of a parameter, as a 95 % interval by Student's law for the blocks, clipped to its bounds.
+    /// Returns the 95 % interval of a parameter by its statistical error, with Student's law for the number of blocks, clipped to its
+    /// bounds.
     pub fn interval(&self, parameter: usize) -> [f64; 2] {
         let reach = student_95(self.cross_validated.block_count()) * self.errors[parameter];
         let [low, high] =

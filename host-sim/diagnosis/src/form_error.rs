@@ -1,5 +1,5 @@
-//! Model-form error: how much of what an effect explains a better form of it could gain, measured on robots with one known
-//! effect.
+//! Model-form error: what a better form of an effect could gain, as a fraction of what the effect explains. It is measured on
+//! robots with one known effect.
 
 use super::confirm::weigh;
 use super::fit::{FitContext, Fitted, best_of_each};

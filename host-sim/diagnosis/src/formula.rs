@@ -11,13 +11,13 @@ mod pursuit;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::channel::Channel;
 use super::confirm::Confirmed;
 use super::explanation::Explanation;
 use super::fit::{FitContext, Fitted};
 use super::gain::Gain;
 use super::sample::HoldOut;
 use library::Term;
+use mindgap_foundations::channel::Channel;
 use mindgap_foundations::statistics::rounding::three_digits;
 use mindgap_foundations::statistics::summary::{QUARTILE, median};
 use mindgap_foundations::statistics::{bootstrap, rounding};

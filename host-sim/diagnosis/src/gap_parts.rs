@@ -4,15 +4,15 @@
 //! that the parts add up as the parts of a mean squared error do. Noise itself counts by the fraction of its variance that the
 //! simulator does not assume. Echoes count by their log-likelihood.
 
-use super::channel::Channel;
 use super::confirm::Confirmed;
 use super::fit::Fitted;
 use super::sample::{RowSet, Sample};
 use super::scores::Scores;
+use mindgap_foundations::channel::Channel;
 use mindgap_models::effects::Candidate;
 
 /// The parts of a gap.
-pub struct Ledger {
+pub struct GapParts {
     /// Gain of each chosen effect, by its id.
     pub effects: Vec<(&'static str, Scores)>,
     /// Gain of the structured residual beyond them.
@@ -23,7 +23,7 @@ pub struct Ledger {
     remaining_noise: [f64; 3],
 }
 
-impl Ledger {
+impl GapParts {
     /// Accounts for a gap on some rows.
     pub fn of(found: &Confirmed, rows: RowSet) -> Self {
         let (sample, remaining_noise) = (rows.sample(), remaining_noise(found));
@@ -43,13 +43,13 @@ impl Ledger {
             _ => &accounted(&subset(&found.chosen, kept), remaining_noise, found, sample) - &null,
         });
         let effects = ids.into_iter().zip(effects).collect();
-        Ledger { effects, unexplained, noise: excess_noise(found, sample), remaining_noise }
+        GapParts { effects, unexplained, noise: excess_noise(found, sample), remaining_noise }
     }
 
-    /// Makes a ledger of these parts for tests.
+    /// Makes a gap of these parts for tests.
     #[cfg(test)]
     pub fn made_up(effects: Vec<(&'static str, Scores)>, noise: Scores, unexplained: Scores) -> Self {
-        Ledger { effects, unexplained, noise, remaining_noise: [1.0; 3] }
+        GapParts { effects, unexplained, noise, remaining_noise: [1.0; 3] }
     }
 
     /// Returns what the effects gain together.
@@ -69,7 +69,7 @@ impl Ledger {
     }
 }
 
-/// See [`Ledger::remaining_noise`].
+/// See [`GapParts::remaining_noise`].
 fn remaining_noise(found: &Confirmed) -> [f64; 3] {
     let mut noise = found.chosen.noise;
     for remainder in found.beyond_chosen.iter().filter(|r| r.counts()) {

@@ -2,11 +2,11 @@
 
 use std::ops::Range;
 
-use super::channel::Channel;
 use super::noise_model::{fitted_noise, log_density};
 use super::sample::Sample;
 use super::scores::Scores;
 use super::witnesses::{Seen, Witnesses};
+use mindgap_foundations::channel::Channel;
 use mindgap_foundations::statistics::maximise::Bounds;
 use mindgap_learning::evaluation::observations::Observation;
 use mindgap_learning::evaluation::predictions::facing_in;

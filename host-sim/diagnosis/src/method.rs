@@ -1,7 +1,7 @@
 //! The settings of a diagnosis.
 
 use super::calibration::Calibration;
-use super::channel::Channel;
+use mindgap_foundations::channel::Channel;
 use mindgap_models::effects::{CATALOGUE, Effect, Place};
 
 /// The candidates, thresholds and seed of a diagnosis.

@@ -106,8 +106,8 @@ fn weighted_products(columns: &DMatrix<f64>, weights: &[f64]) -> DMatrix<f64> {
     weighted.tr_mul(columns)
 }
 
-/// Returns what turns features into open directions, in which the training logs leave one standard deviation of the noise
-/// uncertain. `precision` is that of training, `information` that of the rows. Returns `None` if no direction is open.
+/// Returns the matrix that converts features to open directions: those in which the training logs leave one standard deviation of
+/// the noise uncertain. `precision` is that of training, `information` that of the rows. Returns `None` if no direction is open.
 fn open_directions(precision: DMatrix<f64>, information: DMatrix<f64>) -> Option<DMatrix<f64>> {
     let factor = Cholesky::new(precision)?;
     let lower = factor.l();

@@ -14,7 +14,7 @@ pub const REACH: [f64; 3] = [100.0, 100.0, std::f64::consts::PI];
 /// The scale of Student's distribution that fits the standard normal distribution best.
 pub const SCALE_OF_NORMAL: f64 = 0.856_621;
 /// Half of Student's distribution lies within this many scales.
-const QUARTILE: f64 = 0.726_687;
+const STUDENT_QUARTILE: f64 = 0.726_687;
 /// Relative tolerance of a fitted standard deviation. The likelihood is flat at its maximum: the remaining error changes that of
 /// ten thousand rows by 1e-4 nats.
 const TOLERANCE: f64 = 1e-4;
@@ -34,7 +34,7 @@ pub fn most_nats(axis: usize, noise: f64) -> f64 {
 
 /// Returns the maximum-likelihood standard deviation of residuals, each given with its weight; `least` or more.
 pub fn fitted_noise(axis: usize, residuals: &[[f64; 2]], least: f64) -> f64 {
-    let middle = median(residuals.iter().map(|[r, _]| r.abs())) / QUARTILE / SCALE_OF_NORMAL;
+    let middle = median(residuals.iter().map(|[r, _]| r.abs())) / STUDENT_QUARTILE / SCALE_OF_NORMAL;
     let squares = residuals.iter().map(|[r, weight]| (r * r, *weight)).filter(|(square, _)| square.is_finite());
     let (squares, weights): (Vec<f64>, Vec<f64>) = squares.unzip();
     let next = |noise: f64| reweighted(axis, &squares, &weights, noise).max(least);

@@ -9,7 +9,6 @@ mod kernel;
 mod motion;
 mod sonar;
 
-use super::channel::Channel;
 use super::epistemic_error::EpistemicError;
 use super::explanation::Explanation;
 use super::fit::{FitContext, Fitted};
@@ -19,6 +18,7 @@ use super::sample::{HoldOut, RowSet};
 use super::scores::Scores;
 use basis::{Basis, Covariates};
 use kernel::{KernelRegression, Neighbours, Spot};
+use mindgap_foundations::channel::Channel;
 use mindgap_foundations::statistics::ridge;
 use mindgap_learning::evaluation::observations::FEWEST_BLOCKS;
 

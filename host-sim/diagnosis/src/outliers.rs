@@ -7,12 +7,12 @@ use std::iter;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::channel::Channel;
 use super::fit::{FitContext, Fitted};
 use super::noise_model::{REACH, log_density};
 use super::sample::{HoldOut, Sample};
 use super::scope::of_sensor;
 use super::scores::Scores;
+use mindgap_foundations::channel::Channel;
 use mindgap_foundations::statistics::rounding;
 use mindgap_learning::evaluation::observations::Observation;
 

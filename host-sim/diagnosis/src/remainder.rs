@@ -3,11 +3,11 @@
 use rayon::prelude::*;
 
 use super::calibration::Calibration;
-use super::channel::Channel;
 use super::fit::{FitContext, Fitted};
 use super::gain::Gain;
 use super::omnibus::Regression;
 use super::sample::{HoldOut, RowSet};
+use mindgap_foundations::channel::Channel;
 
 /// The structured residual of a fit in one channel.
 pub struct Remainder {

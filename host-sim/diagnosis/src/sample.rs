@@ -5,8 +5,8 @@
 
 use std::ops::Deref;
 
-use super::channel::Channel;
 use super::scores::{Blocks, Scores};
+use mindgap_foundations::channel::Channel;
 use mindgap_learning::evaluation::observations::{Observation, Observations};
 use mindgap_learning::evaluation::predictions::residual;
 use mindgap_models::effects::chain::EffectChain;
@@ -46,7 +46,7 @@ pub enum RowSet<'r> {
     HeldOut(&'r HoldOut<'r>),
 }
 
-/// A fit begins on at most this many rows, as many as 24 runs of one minute: of twice as many, on every second one.
+/// A fit begins on at most this many rows, evenly spread; 24 runs of one minute have as many.
 const MOST_SKETCHED_ROWS: usize = 1500;
 
 impl<'a> Sample<'a> {

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::channel::Channel;
+use mindgap_foundations::channel::Channel;
 use mindgap_logs::inspection::Part;
 
 /// The channels that were compared and those that were not.

@@ -3,7 +3,7 @@
 use std::ops::{Add, Sub};
 use std::sync::Arc;
 
-use super::channel::Channel;
+use mindgap_foundations::channel::Channel;
 use mindgap_learning::evaluation::observations::Observations;
 
 /// The block of every row.

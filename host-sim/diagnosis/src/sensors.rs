@@ -4,10 +4,10 @@
 
 mod join;
 
-use super::channel::Channel;
 use super::diagnose::{Findings, findings};
 use super::method::Method;
 use super::scope::NotCompared;
+use mindgap_foundations::channel::Channel;
 use mindgap_foundations::error::Result;
 use mindgap_logs::Logs;
 use mindgap_logs::heard::Heard;

@@ -1,10 +1,10 @@
 //! One effect among several: what it gains next to the others, and what could take its place.
 
 use super::calibration::Calibration;
-use super::channel::Channel;
 use super::explanation::Explanation;
 use super::fit::{FitContext, Fitted, TOLERANCE_NATS};
 use super::gain::Gain;
+use mindgap_foundations::channel::Channel;
 
 /// The slot of one of several effects.
 pub struct Slot {

@@ -3,13 +3,13 @@
 use glam::DVec2;
 
 use super::calibration::{Calibration, Judgement};
-use super::channel::Channel;
 use super::confirm::Confirmed;
 use super::fit::{FitContext, Fitted};
 use super::hypothesis::Hypothesis;
 use super::method::Method;
 use super::sample::Identification;
 use super::scores::{Blocks, Scores};
+use mindgap_foundations::channel::Channel;
 use mindgap_foundations::geometry::Pose;
 use mindgap_foundations::motion::Motion;
 use mindgap_learning::evaluation::observations::{Observation, Observations, number_places, side_ray_ranges_cm};
@@ -183,6 +183,8 @@ pub const LONGER: Effect = Effect {
     id: "longer",
     name: "longer",
     what: "Made up.",
+    in_logs: "",
+    imitated_by: &[],
     check: "None.",
     place: None,
     needs_known_robot: false,
@@ -198,6 +200,8 @@ pub const SLIGHTLY_LONGER: Effect = Effect {
     id: "slightly_longer",
     name: "slightly_longer",
     what: "Made up.",
+    in_logs: "",
+    imitated_by: &[],
     check: "None.",
     place: None,
     needs_known_robot: false,
@@ -213,6 +217,8 @@ pub const LONGER_TO_THE_LEFT: Effect = Effect {
     id: "longer_to_the_left",
     name: "longer_to_the_left",
     what: "Made up.",
+    in_logs: "",
+    imitated_by: &[],
     check: "None.",
     place: None,
     needs_known_robot: false,
@@ -231,6 +237,8 @@ pub const FARTHER: Effect = Effect {
     id: "farther",
     name: "farther",
     what: "Made up.",
+    in_logs: "",
+    imitated_by: &[],
     check: "None.",
     place: None,
     needs_known_robot: false,

@@ -2,8 +2,8 @@
 
 use glam::DVec2;
 
-use super::channel::Channel;
 use super::scope::Scope;
+use mindgap_foundations::channel::Channel;
 use mindgap_foundations::error::{Error, Result};
 use mindgap_foundations::geometry::wrap_rad;
 use mindgap_foundations::statistics::summary::median;
@@ -164,8 +164,8 @@ fn same_commands(a: &Run, b: &Run) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::channel::Channel;
     use crate::test_support::{alternating, baseline, baseline_with_sonar, driven};
+    use mindgap_foundations::channel::Channel;
     use mindgap_foundations::geometry::Pose;
 
     /// Returns commands that differ from run to run.

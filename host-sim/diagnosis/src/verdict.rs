@@ -8,7 +8,6 @@ use serde_json::{Map, Value};
 
 use super::budget::{Part, SCATTER};
 use super::calibration::Calibration;
-use super::channel::Channel;
 use super::confirm::Confirmed;
 use super::explanation::Explanation;
 use super::fit::FitContext;
@@ -17,6 +16,7 @@ use super::predictive_check;
 use super::remainder::Remainder;
 use super::ruler::by_ruler;
 use super::wider_noise::WiderNoise;
+use mindgap_foundations::channel::Channel;
 use mindgap_foundations::statistics::rounding;
 use mindgap_foundations::statistics::summary::{logistic, standard_error_of_sum};
 use mindgap_logs::Robot;

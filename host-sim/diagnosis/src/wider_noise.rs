@@ -1,12 +1,12 @@
 //! Noise of steps beyond the simulator's. It is unstructured, so no effect can reduce it; it is reported as excess noise.
 
-use super::channel::Channel;
 use super::explanation::Explanation;
 use super::fit::FitContext;
 use super::noise_model::{fitted_noise, log_density};
 use super::remainder::Remainder;
 use super::sample::{HoldOut, RowSet, Sample};
 use super::scores::Scores;
+use mindgap_foundations::channel::Channel;
 use mindgap_learning::evaluation::observations::Observation;
 
 /// A motion channel whose noise exceeds the simulator's.

@@ -182,11 +182,11 @@ fn densities(rows: &[Observation], residuals: &[[Option<f64>; 3]], noise: [f64; 
 
 #[cfg(test)]
 mod tests {
-    use crate::channel::Channel;
     use crate::diagnose::diagnose;
     use crate::diagnosis::Diagnosis;
     use crate::test_support::{alternating, baseline, driven};
     use crate::verdict::Verdict;
+    use mindgap_foundations::channel::Channel;
 
     /// The diagnosis of an untracked robot whose left wheel turns by a share of what is commanded in a step.
     fn counted(share: impl Fn(usize) -> f64) -> Diagnosis {

@@ -7,6 +7,7 @@ pub mod echo_law;
 pub mod ensemble;
 pub mod familiar;
 pub mod fast;
+mod feature_regression;
 pub mod genome;
 pub mod kernel;
 pub mod nominal;

@@ -17,7 +17,6 @@ pub mod own;
 pub mod parameter;
 pub mod pieces;
 pub mod scales;
-pub mod signs;
 pub mod twist;
 pub mod variant;
 pub mod witness;

@@ -3,9 +3,9 @@
 use serde::Serialize;
 
 use super::profile::{Bin, FEWEST, residuals, table, unit, variables};
-use crate::channel::Channel;
 use crate::confirm::Confirmed;
 use crate::fit::FitContext;
+use mindgap_foundations::channel::Channel;
 use mindgap_learning::evaluation::observations::Observation;
 use mindgap_models::effects::applied::AppliedEffect;
 use mindgap_models::effects::chain::EffectChain;

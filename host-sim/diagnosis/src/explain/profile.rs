@@ -4,10 +4,10 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::covariates as of;
-use crate::channel::Channel;
 use crate::confirm::Confirmed;
 use crate::fit::FitContext;
 use crate::sample::Sample;
+use mindgap_foundations::channel::Channel;
 use mindgap_foundations::statistics::rounding;
 use mindgap_learning::evaluation::observations::Observation;
 use mindgap_learning::evaluation::predictions::facing;

@@ -6,12 +6,12 @@ use serde::Serialize;
 use super::covariates::{
     change, distance_cm, edge_in_beam, from_middle_cm, heading_deg, incidence_deg, reverses, seconds, speed, turning,
 };
-use crate::channel::Channel;
 use crate::confirm::Confirmed;
 use crate::explanation::Explanation;
 use crate::fit::FitContext;
 use crate::scores::Scores;
 use crate::verdict::Verdict;
+use mindgap_foundations::channel::Channel;
 use mindgap_foundations::geometry::wrap_rad;
 use mindgap_foundations::statistics::{bootstrap, rounding};
 use mindgap_learning::evaluation::observations::Observation;

@@ -1,8 +1,8 @@
 //! Motion and sensor apart: where no effect changes both, their likelihoods multiply, and each is fitted by itself.
 
 use super::{FitContext, Fitted};
-use crate::channel::Channel;
 use crate::scores::Scores;
+use mindgap_foundations::channel::Channel;
 use mindgap_models::effects::Candidate;
 
 /// What an effect changes.

@@ -3,12 +3,12 @@
 use super::basis::Covariates;
 use super::kernel::{self, KernelRegression, Spot};
 use super::{Design, Likelihood, Regression, Steps};
-use crate::channel::Channel;
 use crate::epistemic_error::EpistemicError;
 use crate::fit::{FitContext, Fitted};
 use crate::motion_uncertainty::FARTHEST;
 use crate::residuals::{log_likelihoods, subtract, usual_noise};
 use crate::sample::{RowSet, Sample};
+use mindgap_foundations::channel::Channel;
 use mindgap_foundations::motion::Motion;
 use mindgap_foundations::statistics::summary::root_mean_square;
 use mindgap_learning::evaluation::observations::Observation;

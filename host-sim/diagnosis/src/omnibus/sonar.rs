@@ -3,9 +3,9 @@
 use super::basis::Covariates;
 use super::kernel::Spot;
 use super::{Design, Likelihood, Regression, Steps, Surface};
-use crate::channel::Channel;
 use crate::fit::{FitContext, Fitted, MOST_ITERATIONS, TOLERANCE_NATS};
 use crate::sample::Sample;
+use mindgap_foundations::channel::Channel;
 use mindgap_foundations::statistics::maximise::{Bounds, climb};
 use mindgap_foundations::statistics::summary::{QUARTILE, median};
 use mindgap_learning::evaluation::observations::Observation;

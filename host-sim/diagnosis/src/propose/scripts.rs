@@ -76,7 +76,7 @@ fn script(manoeuvres: &[Manoeuvre], parts: [usize; PARTS]) -> Script {
     names.dedup();
     let commands = (0..STEPS).map(|step| {
         let pattern = &manoeuvres[parts[step / STEPS_PER_PART]].pattern;
-        // A manoeuvre that goes on continues its pattern.
+        // A long manoeuvre repeats its pattern.
         pattern[step % pattern.len()]
     });
     Script { name: names.join(", then "), commands: commands.collect() }

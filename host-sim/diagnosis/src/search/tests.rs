@@ -1,6 +1,6 @@
 use super::*;
-use crate::channel::Channel;
 use crate::test_support::*;
+use mindgap_foundations::channel::Channel;
 use mindgap_learning::evaluation::observations::Observations;
 use mindgap_models::effects::applied::AppliedEffect;
 use mindgap_models::effects::{self, Candidate, Effect};

@@ -3,11 +3,11 @@
 use super::{Further, not_compared};
 use crate::account::{GapReduction, Reduction};
 use crate::budget::{Part, SCATTER, UNEXPLAINED};
-use crate::channel::Channel;
 use crate::diagnose::Findings;
 use crate::diagnosis::Diagnosis;
 use crate::scope::{NotCompared, Scope};
 use crate::verdict::{NamedEffect, Verdict, in_order};
+use mindgap_foundations::channel::Channel;
 use mindgap_models::effects::applied::AppliedEffect;
 use mindgap_models::effects::{Place, catalogue};
 
@@ -144,7 +144,8 @@ fn reduction(main: Option<GapReduction>, other: Option<GapReduction>) -> Option<
     Some(main)
 }
 
-/// The interval of what is closed of both: the errors of the parts, which are of other readings, add up as squares.
+/// Returns the interval of the fraction closed in both parts together. Their errors are independent, since their readings are, so
+/// the squares add up.
 fn interval(both: [&Reduction; 2], before: f64) -> Option<[f64; 2]> {
     let known = both.into_iter().filter_map(|of| Some((of.before / before, of.reducible_closed?, of.ci95?)));
     let (mut closed, mut squares) = (None, [0.0; 2]);

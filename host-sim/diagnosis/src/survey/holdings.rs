@@ -103,10 +103,10 @@ type HasColumns = fn(&Row) -> bool;
 
 /// Columns, what a diagnosis reads from them, and whether a row has them.
 const WITNESSES: [(&str, &str, HasColumns); 2] = [
-    ("rot_left_deg, rot_right_deg", "the motion up to the wheels, where nobody tracked the robot", |row| {
+    ("rot_left_deg, rot_right_deg", "motion of the wheels; used if the robot was not tracked", |row| {
         row.rot_left_deg.is_some() && row.rot_right_deg.is_some()
     }),
-    ("gyro_deg_s", "the turns of the body, where nobody tracked the robot", |row| row.gyro_deg_s.is_some()),
+    ("gyro_deg_s", "turns of the body; used if the robot was not tracked", |row| row.gyro_deg_s.is_some()),
 ];
 
 /// Least and largest of some numbers.

@@ -1,8 +1,8 @@
 //! The diagnosis on logs of the built-in robot, from the logs alone.
 
-use mindgap_diagnosis::channel::Channel;
 use mindgap_diagnosis::verdict::Verdict;
 use mindgap_diagnosis::{Diagnosis, diagnose};
+use mindgap_foundations::channel::Channel;
 use mindgap_logs::{Logs, Row};
 use mindgap_models::simulator::baseline::Baseline;
 use mindgap_models::simulator::kinematic;

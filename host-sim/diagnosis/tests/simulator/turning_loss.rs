@@ -7,6 +7,8 @@ pub const EFFECT: Effect = Effect {
     id: "turning_loss",
     name: "turning_loss",
     what: "Made up.",
+    in_logs: "",
+    imitated_by: &[],
     check: "None.",
     place: None,
     needs_known_robot: false,

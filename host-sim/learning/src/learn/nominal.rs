@@ -1,19 +1,16 @@
 //! Learns the reference of a simulator: its nominal behaviour beyond the networks, relative to which the gap is measured.
 
+use super::feature_regression::{self, fold};
 use super::{beam, drive_filter, familiar, place_bound, sensor_law, wheels};
-use mindgap_foundations::motion::{Axis, Motion};
-use mindgap_foundations::statistics::ridge;
-use mindgap_foundations::statistics::summary::root_mean_square;
+use mindgap_foundations::motion::Motion;
 use mindgap_logs::{Logs, samples};
 use mindgap_models::simulator::Simulator;
 use mindgap_models::simulator::ensemble::CommandScale;
 use mindgap_models::simulator::nominal::NominalModel;
-use mindgap_models::simulator::nominal::motion_bias::{FEATURES, MotionBias, Precision, features, products};
+use mindgap_models::simulator::nominal::motion_bias::{MotionBias, Precision, features, products};
 use mindgap_models::simulator::residuals::ConstantReading;
 use mindgap_models::sonar::{FirstEchoLaw, SensorLaw};
 
-/// Number of folds of cross-validation.
-const FOLDS: usize = 5;
 /// Ratios of noise variance to prior variance that are tried. At the first, a thousand steps hold half a standard deviation
 /// of the noise; at the last, the prior is wide even for bends that only slow wheels pass.
 const STRENGTHS: [f64; 9] = [1000.0, 215.0, 46.0, 10.0, 2.15, 0.46, 0.1, 0.02, 0.004];
@@ -61,23 +58,12 @@ fn motion(simulator: &Simulator, logs: &Logs) -> Option<MotionBias> {
     }
     let scale = CommandScale::of(simulator.commands);
     let rows: Vec<Vec<f64>> = steps.iter().map(|s| features(s.speeds, scale.share()).to_vec()).collect();
-    // If there are few runs, they are cut into parts.
-    let parts = if logs.runs.len() < FOLDS { FOLDS } else { 1 };
-    let part = |s: &samples::MotionSample| s.run + s.row * parts / logs.runs[s.run].rows.len();
-    let folds: Vec<usize> = steps.iter().map(|s| part(s) % FOLDS).collect();
+    let folds: Vec<usize> = steps.iter().map(|s| fold(logs, s.run, s.row)).collect();
     let residuals: Vec<Motion<f64>> = steps.iter().map(|s| networks.residual(s)).collect();
-    let fit = |axis: Axis| {
-        let unit = root_mean_square(residuals.iter().map(|r| r[axis])).max(f64::MIN_POSITIVE);
-        let ridge = ridge::fit(&rows, &folds, &STRENGTHS, |i, _| residuals[i][axis] / unit);
-        let weights: Vec<f64> = ridge.weights.iter().map(|w| unit * w).collect();
-        let left = residuals.iter().zip(&rows).map(|(r, row)| r[axis] - ridge::predicted(row, &weights));
-        let scatter = (left.map(|r| r * r).sum::<f64>() / steps.len().saturating_sub(FEATURES).max(1) as f64).sqrt();
-        (weights, scatter, ridge.strength.unwrap_or(STRENGTHS[0]))
-    };
-    let fits = Motion::from_fn(fit);
+    let fits = Motion::from_fn(|axis| feature_regression::fit(&rows, &folds, &STRENGTHS, |i| residuals[i][axis]));
     // Absurd commands make the products overflow.
     let products = Some(products(&rows)).filter(|products| products.iter().all(|product| product.is_finite()));
-    let precision = products.map(|products| Precision { products, prior: fits.each_ref().map(|fit| fit.2) });
-    let scatter = fits.each_ref().map(|fit| fit.1);
-    Some(MotionBias { scale, scatter, precision, weights: fits.map(|fit| fit.0) })
+    let precision = products.map(|products| Precision { products, prior: fits.each_ref().map(|fit| fit.strength) });
+    let scatter = fits.each_ref().map(|fit| fit.scatter);
+    Some(MotionBias { scale, scatter, precision, weights: fits.map(|fit| fit.weights) })
 }

@@ -1,17 +1,14 @@
 //! Learns how far commands turn the wheels from rotation counters, by ridge regression on the features of the motion.
 
-use mindgap_foundations::statistics::ridge;
-use mindgap_foundations::statistics::summary::root_mean_square;
+use super::feature_regression::{self, fold};
 use mindgap_logs::{Logs, samples};
 use mindgap_models::effects::context::RunHistory;
 use mindgap_models::effects::drive_filter::FilteredDrive;
 use mindgap_models::simulator::Simulator;
 use mindgap_models::simulator::ensemble::CommandScale;
 use mindgap_models::simulator::nominal::WheelLaw;
-use mindgap_models::simulator::nominal::motion_bias::{FEATURES, features};
+use mindgap_models::simulator::nominal::motion_bias::features;
 
-/// Number of folds of cross-validation.
-const FOLDS: usize = 5;
 /// Ratios of noise variance to prior variance that are tried. Counters are a thousand times as exact as a step is long.
 const STRENGTHS: [f64; 9] = [1.0, 0.1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8];
 /// Minimum number of steps: more than there are features.
@@ -22,8 +19,6 @@ pub fn learn(simulator: &Simulator, logs: &Logs) -> Option<WheelLaw> {
     let scale = CommandScale::of(simulator.commands);
     let drive = FilteredDrive::from(simulator.filter.up_to_the_rims());
     let (mut rows, mut turned_cm, mut folds) = (Vec::new(), Vec::new(), Vec::new());
-    // If there are few runs, they are cut into parts.
-    let parts = if logs.runs.len() < FOLDS { FOLDS } else { 1 };
     for (index, run) in logs.runs.iter().enumerate() {
         let mut history = RunHistory::default();
         for (k, row) in run.rows.iter().enumerate() {
@@ -32,20 +27,13 @@ pub fn learn(simulator: &Simulator, logs: &Logs) -> Option<WheelLaw> {
             let speeds = drive.speeds(history.commands(), 0, &logs.robot);
             rows.push(features(speeds.inputs(), scale.share()).to_vec());
             turned_cm.push(wheels_cm);
-            folds.push((index + k * parts / run.rows.len()) % FOLDS);
+            folds.push(fold(logs, index, k));
         }
     }
     if rows.len() < FEWEST {
         return None;
     }
-    let fit = |side: usize| {
-        let unit = root_mean_square(turned_cm.iter().map(|cm| cm[side])).max(f64::MIN_POSITIVE);
-        let ridge = ridge::fit(&rows, &folds, &STRENGTHS, |i, _| turned_cm[i][side] / unit);
-        let weights: Vec<f64> = ridge.weights.iter().map(|w| unit * w).collect();
-        let left = turned_cm.iter().zip(&rows).map(|(cm, row)| cm[side] - ridge::predicted(row, &weights));
-        let scatter_cm = (left.map(|r| r * r).sum::<f64>() / (rows.len() - FEATURES) as f64).sqrt();
-        (weights, scatter_cm)
-    };
-    let [(left, left_scatter_cm), (right, right_scatter_cm)] = [fit(0), fit(1)];
-    Some(WheelLaw { scale, weights: [left, right], scatter_cm: [left_scatter_cm, right_scatter_cm] })
+    let [left, right] = [0, 1].map(|side| feature_regression::fit(&rows, &folds, &STRENGTHS, |i| turned_cm[i][side]));
+    let scatter_cm = [left.scatter, right.scatter];
+    Some(WheelLaw { scale, weights: [left.weights, right.weights], scatter_cm })
 }

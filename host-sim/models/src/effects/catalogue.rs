@@ -199,6 +199,17 @@ mod tests {
     }
 
     #[test]
+    fn every_effect_says_what_it_looks_like_and_what_imitates_it() {
+        for Effect { id, in_logs, imitated_by, .. } in CATALOGUE {
+            assert!(in_logs.ends_with('.'), "{id}");
+            assert!(
+                imitated_by.iter().all(|other| other != id && CATALOGUE.iter().any(|effect| effect.id == *other)),
+                "{id}"
+            );
+        }
+    }
+
+    #[test]
     fn ids_of_variants_and_names_of_parameters_are_unique() {
         let unique = |mut names: Vec<&str>| {
             let all = names.len();

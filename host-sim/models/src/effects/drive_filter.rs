@@ -110,7 +110,7 @@ impl DriveFilter {
     }
 }
 
-/// A [`DriveFilter`] with all that does not depend on the commands worked out.
+/// A [`DriveFilter`] with everything computed that does not depend on the commands.
 #[derive(Clone, Debug)]
 pub struct FilteredDrive {
     filter: DriveFilter,

@@ -128,6 +128,8 @@ fn make(definition: &Definition) -> std::result::Result<&'static Effect, String>
         id,
         name: id,
         what: leaked(&definition.description),
+        in_logs: "",
+        imitated_by: &[],
         check: CHECK,
         place: None,
         needs_known_robot: false,

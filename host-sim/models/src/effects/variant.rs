@@ -20,6 +20,10 @@ pub struct Effect {
     pub name: &'static str,
     /// What it is, in one sentence.
     pub what: &'static str,
+    /// A sentence about the residuals that it leaves in logs; empty for a user's own effect.
+    pub in_logs: &'static str,
+    /// Ids of the effects that leave similar residuals.
+    pub imitated_by: &'static [&'static str],
     /// How to check it on the robot, with no more than a ruler, scales, a video or a multimeter.
     pub check: &'static str,
     /// Where in the robot it sits; not known of a user's own effect.

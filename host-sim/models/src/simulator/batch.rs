@@ -1,6 +1,6 @@
 //! The kernel: many runs advance together, one a lane, and a lane whose run has ended takes up the next.
 //!
-//! A step is worked out for all lanes alike. What happens to single robots only, such as a reading that ends a tuple,
+//! A step is computed for all lanes alike. What happens to single robots only, such as a reading that ends a tuple,
 //! is looked at where the lanes say that it may happen.
 //!
 //! Each run draws from its own generator and no operation crosses lanes, so an outcome depends neither on the runs

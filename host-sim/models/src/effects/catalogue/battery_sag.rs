@@ -1,4 +1,4 @@
-//! The drive gets weaker as the run goes on.
+//! The drive gets weaker during the run.
 
 use super::{each_command, parameters};
 use crate::effects::parameter::Guesses;
@@ -7,7 +7,9 @@ use crate::effects::{Effect, Hook, Parameter, Place, StepContext, Variant};
 pub const EFFECT: Effect = Effect {
     id: "battery_sag",
     name: "battery sag",
-    what: "The drive gets weaker as the run goes on, as it does on a battery that empties.",
+    what: "The drive gets weaker during the run, as it does on a battery that empties.",
+    in_logs: "Steps agree at the start of a run and get shorter with time, on both wheels alike.",
+    imitated_by: &["drive_scale", "payload"],
     check: "Measure the battery's voltage under load with a multimeter before and after a run; then drive straight \
             for one second with it full and with it used, and compare both ways with a ruler.",
     place: Some(Place::Motor),

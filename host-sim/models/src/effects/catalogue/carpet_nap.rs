@@ -9,6 +9,8 @@ pub const EFFECT: Effect = Effect {
     id: "carpet_nap",
     name: "carpet nap",
     what: "Drag depends on the direction of travel, as on a carpet whose fibres lie one way.",
+    in_logs: "Forward motion is shortest in one direction of travel and longest in the opposite one.",
+    imitated_by: &["slope"],
     check: "Drive the same straight command in four directions and measure the ways with a ruler; stroke the carpet \
             by hand to feel its direction.",
     place: Some(Place::Ground),

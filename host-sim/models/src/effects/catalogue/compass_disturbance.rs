@@ -10,6 +10,8 @@ pub const EFFECT: Effect = Effect {
     id: "compass_disturbance",
     name: "disturbed compass",
     what: "The error of the heading depends on the heading, as iron near a compass makes it.",
+    in_logs: "Turns are off depending on the heading; the errors cancel over a full turn.",
+    imitated_by: &["tracker_rotation", "track_width"],
     check: "Turn the robot on a disc with marks of 30 degrees and compare the reported headings.",
     place: Some(Place::Tracker),
     needs_known_robot: false,

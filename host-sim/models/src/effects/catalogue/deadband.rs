@@ -10,6 +10,8 @@ pub const EFFECT: Effect = Effect {
     id: "deadband",
     name: "deadband",
     what: "Friction in the drive keeps it from moving at small commands.",
+    in_logs: "Small commands move the robot too little or not at all; large ones agree.",
+    imitated_by: &["payload", "inertia"],
     check: "Raise the command in small steps from zero, on the floor, and note the one at which the wheels begin to \
             turn.",
     place: Some(Place::Motor),

@@ -10,6 +10,8 @@ pub const EFFECT: Effect = Effect {
     name: "drive scale",
     what: "Both wheels cover more or less ground than commanded, by one factor: other tyres, another gear, another \
            battery.",
+    in_logs: "Forward motion and turns are off by one factor at all speeds.",
+    imitated_by: &["saturation", "payload", "tracker_scale"],
     check: "Command a straight metre and measure the way with a ruler; the wheel's diameter, measured with calipers, \
             should be the one in robot.toml.",
     place: Some(Place::Wheel),

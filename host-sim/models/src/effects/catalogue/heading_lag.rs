@@ -9,6 +9,8 @@ pub const EFFECT: Effect = Effect {
     id: "heading_lag",
     name: "lagging heading",
     what: "The tracked heading lags behind the robot's: a filter in the tracker or in the compass smooths it.",
+    in_logs: "In turns the robot moves to the inside of its heading; after a change of turn rate the heading moves on over several steps.",
+    imitated_by: &["turn_lag", "marker_offset"],
     check: "Turn the robot on the spot, stop it at once, and watch the tracked heading: it moves on after the robot stands.",
     place: Some(Place::Tracker),
     needs_known_robot: false,

@@ -9,6 +9,8 @@ pub const EFFECT: Effect = Effect {
     id: "inertia",
     name: "inertia",
     what: "The drive takes longer to reach the commanded speed.",
+    in_logs: "After a change of the command the motion approaches its new value over several steps.",
+    imitated_by: &["latency", "slip"],
     check: "Film a start beside a ruler and mark the robot's place frame by frame: the way grows as a curve before \
             it grows as a line.",
     place: Some(Place::Motor),

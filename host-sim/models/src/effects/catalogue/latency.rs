@@ -8,6 +8,8 @@ pub const EFFECT: Effect = Effect {
     id: "latency",
     name: "latency",
     what: "Commands take effect late, by a fixed time.",
+    in_logs: "Residuals appear only after a change of the command, and the motion is that of the command before.",
+    imitated_by: &["inertia", "tracker_delay"],
     check: "Film the robot together with the screen that sends the command, and count the frames from the command to \
             the first motion.",
     place: Some(Place::Link),

@@ -11,6 +11,8 @@ pub const EFFECT: Effect = Effect {
     id: "lens_distortion",
     name: "lens distortion",
     what: "The camera's scale changes towards the edge of its picture.",
+    in_logs: "Forward motion is off by a factor that changes with the distance from the middle of the picture.",
+    imitated_by: &["tracker_scale"],
     check: "Lay a long ruler in the middle of the picture and along its edge: one length should have one tracked \
             length.",
     place: Some(Place::Tracker),

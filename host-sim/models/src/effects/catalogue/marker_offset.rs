@@ -11,6 +11,8 @@ pub const EFFECT: Effect = Effect {
     id: "marker_offset",
     name: "marker off the axle",
     what: "The tracked marker does not sit over the middle of the axle, so turns on the spot look like motion.",
+    in_logs: "Turns on the spot come with lateral motion in proportion to the turn.",
+    imitated_by: &["turn_loss", "tracker_rotation"],
     check: "Measure from the marker to the middle of the axle with a ruler; turned on the spot by hand, the marker \
             draws a circle of that radius.",
     place: Some(Place::Tracker),

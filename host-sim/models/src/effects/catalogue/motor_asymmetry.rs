@@ -8,6 +8,8 @@ pub const EFFECT: Effect = Effect {
     id: "motor_asymmetry",
     name: "weaker motor",
     what: "One motor turns slower than it did at the same command, so the robot bends to that side.",
+    in_logs: "Straight commands bend to one side, in proportion to the speed.",
+    imitated_by: &["payload", "slip"],
     check: "Lift the robot, give both motors the same command for ten seconds, and count the turns of both wheels; \
             or command a straight metre and measure how far to one side it ends.",
     place: Some(Place::Motor),

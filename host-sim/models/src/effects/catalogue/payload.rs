@@ -11,6 +11,8 @@ pub const EFFECT: Effect = Effect {
     id: "payload",
     name: "payload",
     what: "A load that does not sit in the middle slows the robot, and one wheel more than the other.",
+    in_logs: "The robot is slower at all speeds, slow to start, and bends to the loaded side.",
+    imitated_by: &["motor_asymmetry", "drive_scale", "slope"],
     check: "Put a kitchen scale under each wheel in turn; take off what was added and drive the same commands again.",
     place: Some(Place::Body),
     // A textbook states no load, and what a load does to it is a drive scale, a weak motor, a lag and scrubbing.

@@ -1,4 +1,4 @@
-//! The speed changes by at most so much per second.
+//! The speed changes by a limited amount per second.
 
 use super::parameters;
 use crate::effects::drive_filter::MostChange;
@@ -8,7 +8,9 @@ use crate::effects::{Effect, Hook, Parameter, Place, Variant};
 pub const EFFECT: Effect = Effect {
     id: "rate_limit",
     name: "rate limit",
-    what: "The speed changes by at most so much per second: a ramp in the controller, or motors at their largest torque.",
+    what: "The speed changes by a limited amount per second: a ramp in the controller, or motors at their largest torque.",
+    in_logs: "After a change of the command the motion approaches its new value at a constant rate: large changes take longer.",
+    imitated_by: &["inertia", "slip"],
     check: "Film a start and a full reversal beside a ruler: with a ramp the reversal takes twice as long as the start. \
             Look for an acceleration limit in the settings of the base.",
     place: Some(Place::Motor),

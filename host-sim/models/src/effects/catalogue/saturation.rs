@@ -10,6 +10,8 @@ pub const EFFECT: Effect = Effect {
     id: "saturation",
     name: "saturation",
     what: "Commands above some value add no speed.",
+    in_logs: "Steps at high commands are too short and all alike; slower ones agree.",
+    imitated_by: &["battery_sag", "slip"],
     check: "Time a straight metre at commands of 60, 80 and 100: where the time no longer falls, the drive is at its \
             limit.",
     place: Some(Place::Motor),
@@ -109,7 +111,7 @@ parameters! {
     }
 }
 
-/// Half of what lies between three and five quarters of the limit is lost, and all beyond.
+/// Limits a command smoothly: between 75 and 125 % of the limit half of the excess over 75 % is lost, beyond that everything.
 fn softly_limited(command: f64, limit: f64) -> f64 {
     let (begin, end) = (0.75 * limit, 1.25 * limit);
     let into = ((command - begin) / (end - begin)).clamp(0.0, 1.0);

@@ -10,6 +10,8 @@ pub const EFFECT: Effect = Effect {
     id: "slip",
     name: "wheel slip",
     what: "The tyres lose grip when they are pushed hard.",
+    in_logs: "Steps after large changes of the command, or at high speed, are too short.",
+    imitated_by: &["inertia", "saturation"],
     check: "Clean the tyres and the floor and drive the same commands again; a chalk mark on a tyre shows in a film \
             whether it turns more than the robot moves.",
     place: Some(Place::Ground),

@@ -9,6 +9,8 @@ pub const EFFECT: Effect = Effect {
     id: "slope",
     name: "slope",
     what: "The floor is tilted: the robot gains way downhill and loses it uphill.",
+    in_logs: "Residuals depend on the heading: too long downhill, too short uphill, sideways drift across the slope.",
+    imitated_by: &["carpet_nap", "tracker_rotation"],
     check: "Lay a spirit level on the floor in two directions, or see where a ball rolls.",
     place: Some(Place::Ground),
     needs_known_robot: false,

@@ -8,6 +8,8 @@ pub const EFFECT: Effect = Effect {
     id: "sonar_absorption",
     name: "absorbing surfaces",
     what: "Surfaces return less sound, so that echoes are missing.",
+    in_logs: "Echoes are missing at distances and incidence angles at which the simulator expects them.",
+    imitated_by: &["sonar_dropout", "sonar_beam"],
     check: "Hold a hard board before the wall that gives no reading: if it gives one, the wall swallows the sound.",
     place: Some(Place::Sensor),
     needs_known_robot: false,

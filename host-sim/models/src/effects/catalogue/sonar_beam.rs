@@ -8,6 +8,8 @@ pub const EFFECT: Effect = Effect {
     id: "sonar_beam",
     name: "beam width",
     what: "The beam is wider or narrower than assumed, so that it meets edges earlier or later.",
+    in_logs: "Edges and corners are seen too early or too late; walls that are met squarely agree.",
+    imitated_by: &["sonar_yaw", "sonar_multipath"],
     check: "Move a post across in front of the sensor at one metre and measure how far to each side it is still seen.",
     place: Some(Place::Sensor),
     needs_known_robot: false,

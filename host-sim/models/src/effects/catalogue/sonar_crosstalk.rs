@@ -8,6 +8,8 @@ pub const EFFECT: Effect = Effect {
     id: "sonar_crosstalk",
     name: "crosstalk",
     what: "Now and then there is a random reading that is too short, from another source of sound.",
+    in_logs: "Single readings are too short by random amounts.",
+    imitated_by: &["sonar_ghost", "sonar_noise"],
     check: "Switch off every other ultrasonic sensor, and compressed air, in the room, and log again.",
     place: Some(Place::Sensor),
     needs_known_robot: false,

@@ -8,6 +8,8 @@ pub const EFFECT: Effect = Effect {
     id: "sonar_dropout",
     name: "bursts of missing readings",
     what: "Missing readings come one after the other.",
+    in_logs: "Missing readings follow each other, at any distance and incidence angle.",
+    imitated_by: &["sonar_absorption"],
     check: "Let the robot stand before a wall, log a few hundred readings, and see whether the missing ones come in \
             rows; wiggle the sensor's cable meanwhile.",
     place: Some(Place::Sensor),

@@ -8,6 +8,8 @@ pub const EFFECT: Effect = Effect {
     id: "sonar_ghost",
     name: "ghost reading",
     what: "Now and then there is one constant wrong reading, whatever is in front.",
+    in_logs: "One reading recurs at places where nothing is at that distance.",
+    imitated_by: &["sonar_crosstalk"],
     check: "Point the sensor into an empty room and list its readings: the ghost is the one that comes again; look \
             for a cable or a part of the robot at that distance.",
     place: Some(Place::Sensor),

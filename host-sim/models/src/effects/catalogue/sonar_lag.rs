@@ -9,6 +9,8 @@ pub const EFFECT: Effect = Effect {
     id: "sonar_lag",
     name: "old readings",
     what: "Readings are of where the robot was a while ago.",
+    in_logs: "Readings are too long on the way towards a wall and too short on the way from it.",
+    imitated_by: &["latency", "sonar_offset"],
     check: "Drive straight at a wall and film the display beside a ruler: the reading is that of a place behind.",
     place: Some(Place::Sensor),
     needs_known_robot: false,

@@ -11,6 +11,8 @@ pub const EFFECT: Effect = Effect {
     name: "sound by way of other walls",
     what: "Now and then a reading is too long: a slanted surface mirrors the sound away and it comes back by way of \
            another.",
+    in_logs: "Readings at oblique incidence are now and then much too long.",
+    imitated_by: &["sonar_noise", "sonar_beam"],
     check: "Stand the robot at 45 degrees to a wall: too long readings become right when a soft cloth covers the \
             opposite wall.",
     place: Some(Place::Sensor),

@@ -8,6 +8,8 @@ pub const EFFECT: Effect = Effect {
     id: "sonar_noise",
     name: "sonar noise",
     what: "Readings scatter more than the simulator assumes.",
+    in_logs: "Readings scatter around the right value more than expected, at all distances.",
+    imitated_by: &["sonar_crosstalk", "sonar_lag"],
     check: "Let the robot stand one metre before a wall, log a hundred readings, and compare their range with that \
             of the earlier logs.",
     place: Some(Place::Sensor),

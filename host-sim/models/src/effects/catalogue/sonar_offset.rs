@@ -8,6 +8,8 @@ pub const EFFECT: Effect = Effect {
     id: "sonar_offset",
     name: "sonar offset",
     what: "Readings are too long or too short by one length.",
+    in_logs: "The error of readings is the same at all distances.",
+    imitated_by: &["sonar_scale", "marker_offset"],
     check: "Place the sensor squarely before a wall at 50, 100 and 200 cm by a ruler: the error is the same at each.",
     place: Some(Place::Sensor),
     needs_known_robot: false,

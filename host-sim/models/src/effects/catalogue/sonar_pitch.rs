@@ -8,6 +8,8 @@ pub const EFFECT: Effect = Effect {
     id: "sonar_pitch",
     name: "sensor pointing at the floor",
     what: "The sensor points at the floor and sees nothing beyond it.",
+    in_logs: "Beyond one distance readings are missing, or all are of that distance; nearer ones agree.",
+    imitated_by: &["sonar_absorption", "sonar_ghost"],
     check: "Stand the robot two metres from a wall on a bare floor and lift its front until the reading jumps to the wall's.",
     place: Some(Place::Sensor),
     needs_known_robot: false,

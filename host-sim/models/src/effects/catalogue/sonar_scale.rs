@@ -8,6 +8,8 @@ pub const EFFECT: Effect = Effect {
     id: "sonar_scale",
     name: "sonar scale",
     what: "Readings are too long or too short by one factor.",
+    in_logs: "The error of readings grows in proportion to the distance.",
+    imitated_by: &["sonar_offset", "tracker_scale"],
     check: "Place the sensor squarely before a wall at 50, 100 and 200 cm by a ruler: the error grows with the \
             distance.",
     place: Some(Place::Sensor),

@@ -8,6 +8,8 @@ pub const EFFECT: Effect = Effect {
     id: "sonar_yaw",
     name: "turned sensor",
     what: "The sensor is mounted turned against the robot's heading.",
+    in_logs: "Readings belong to a direction to one side of the heading: too long or too short as a wall slants.",
+    imitated_by: &["sonar_beam", "tracker_rotation"],
     check: "Lay a ruler along the robot and one along the sensor's two eyes: they should make a right angle. If they do, the \
             sensor hears better to one side, which looks the same in logs.",
     place: Some(Place::Sensor),

@@ -11,6 +11,8 @@ pub const EFFECT: Effect = Effect {
     name: "track width",
     what: "Turns are larger or smaller by one factor, and straight runs are not: the wheels touch the floor farther \
            apart or nearer than thought.",
+    in_logs: "Turns are off by one factor; straight steps agree.",
+    imitated_by: &["turn_loss", "compass_disturbance"],
     check: "Measure the distance between the middles of the two tyres where they touch the floor, or command ten \
             full turns on the spot and see how many the robot makes.",
     place: Some(Place::Ground),

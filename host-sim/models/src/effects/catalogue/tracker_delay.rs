@@ -11,6 +11,8 @@ pub const EFFECT: Effect = Effect {
     id: "tracker_delay",
     name: "old poses",
     what: "Tracked poses are old: each is of where the robot was a fixed time ago.",
+    in_logs: "The motion is that of the command before, and readings are those of a place ahead of the pose.",
+    imitated_by: &["latency", "sonar_lag"],
     check: "Push the robot by hand against a wall and film it together with the live pose: count the frames from the bump to the pose \
             that stands still.",
     place: Some(Place::Tracker),

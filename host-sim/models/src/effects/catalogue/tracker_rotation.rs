@@ -11,6 +11,8 @@ pub const EFFECT: Effect = Effect {
     id: "tracker_rotation",
     name: "turned camera frame",
     what: "The camera's frame is turned against the one that headings are measured in.",
+    in_logs: "The robot moves at a fixed angle to its heading, wherever it drives.",
+    imitated_by: &["compass_disturbance", "sonar_yaw"],
     check: "Push the robot along a wall by hand: the tracked heading should be the direction of the tracked path, \
             and both the wall's.",
     place: Some(Place::Tracker),

@@ -8,6 +8,8 @@ pub const EFFECT: Effect = Effect {
     id: "tracker_scale",
     name: "camera scale",
     what: "Tracked lengths are off by one factor.",
+    in_logs: "Forward motion is off by one factor; turns agree.",
+    imitated_by: &["drive_scale"],
     check: "Put the robot at two marks that are one metre apart by a ruler, and compare the tracked distance.",
     place: Some(Place::Tracker),
     needs_known_robot: false,

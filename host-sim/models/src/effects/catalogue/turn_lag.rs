@@ -8,6 +8,8 @@ pub const EFFECT: Effect = Effect {
     id: "turn_lag",
     name: "turn lag",
     what: "The body turns later than its wheels would have it: it is long or heavy, and its tyres yield.",
+    in_logs: "After a change of the command turns approach their new value over several steps; straight runs do at once.",
+    imitated_by: &["inertia", "latency"],
     check: "Film a turn on the spot from above: the wheels turn at once, and the body follows. Straight starts show no delay.",
     place: Some(Place::Body),
     needs_known_robot: false,

@@ -10,6 +10,8 @@ pub const EFFECT: Effect = Effect {
     id: "turn_loss",
     name: "loss of way in turns",
     what: "Both wheels lose way in turns, more the sharper the turn is.",
+    in_logs: "Forward motion is too short in proportion to the turn; straight steps agree.",
+    imitated_by: &["track_width", "marker_offset"],
     check: "Command an arc of one metre and a straight metre, and measure both with a string along the track.",
     place: Some(Place::Ground),
     needs_known_robot: false,

@@ -30,7 +30,7 @@ const SAMPLES: u64 = 60;
 pub fn numbers(definition: &Definition) -> Result<(), String> {
     let Definition { id, parameters, change, .. } = definition;
     if !is_name(id) {
-        return Err(format!("id {id:?} is no name of small letters, digits and _"));
+        return Err(format!("id {id:?} is not a name of small letters, digits and _"));
     }
     if CATALOGUE.iter().any(|effect| effect.id == id) {
         return Err(format!("{id} is the id of a built-in effect: take another"));
@@ -61,7 +61,7 @@ pub fn numbers(definition: &Definition) -> Result<(), String> {
 fn number(parameter: &ParameterDefinition) -> Result<(), String> {
     let ParameterDefinition { name, nominal, bounds: [low, high], prior_sd, guesses, .. } = parameter;
     if !is_name(name) {
-        return Err("is no name of small letters, digits and _".into());
+        return Err("is not a name of small letters, digits and _".into());
     }
     if is_constant(name) || VARIABLES.iter().any(|variable| variable.name == name) {
         return Err("has the name of a variable or constant: take another".into());
@@ -74,7 +74,7 @@ fn number(parameter: &ParameterDefinition) -> Result<(), String> {
         return Err(format!("nominal {nominal} lies outside the bounds {low} to {high}"));
     }
     if prior_sd.is_some_and(|sd| !(sd.is_finite() && sd > 0.0)) {
-        return Err("prior_sd is no positive number".into());
+        return Err("prior_sd is not a positive number".into());
     }
     match guesses.iter().find(|guess| !within(guess) || *guess == nominal) {
         Some(guess) => Err(format!("guess {guess} is nominal or outside the bounds: no fit can start there")),

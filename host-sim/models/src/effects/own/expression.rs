@@ -119,7 +119,7 @@ fn functions(text: &str) -> impl Iterator<Item = &str> {
 /// A function that is not known is found only where it is called, and that may be in a branch that is seldom taken.
 fn know_functions(text: &str) -> Result<(), String> {
     match functions(text).find(|name| Context::<f64>::call(&Math, name, &[]).is_none()) {
-        Some(name) => Err(format!("{name}() is no function that is known: see docs/reference/own-effects.md")),
+        Some(name) => Err(format!("{name}() is not a known function: see docs/reference/own-effects.md")),
         None => Ok(()),
     }
 }
@@ -191,7 +191,7 @@ mod tests {
     fn unreadable_expressions_are_reported() {
         assert!(refusal("k * speed").starts_with("speed is not known here; known are left, right, "));
         assert!(refusal("k * turn_rad").contains("turn_rad is not known here"), "commands come before motion");
-        assert!(refusal("k > 5 ? 1 : sine(k)").starts_with("sine() is no function"));
+        assert!(refusal("k > 5 ? 1 : sine(k)").starts_with("sine() is not a known function"));
         assert_eq!(refusal("k *"), "ends where something is missing");
         assert_eq!(refusal("k * * 2"), "unexpected token: *");
         assert_eq!(refusal(""), "ends where something is missing");

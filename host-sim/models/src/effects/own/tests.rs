@@ -158,7 +158,7 @@ fn errors_are_reported_with_their_place() {
     assert_refused("description", "describes", ":4: ", "unknown key `describes`");
     assert_refused("bounds = [0.0, 20.0]", "bounds = [0.0, 20.0", ":", "");
     assert_refused("abs(turn_rad)", "abs(turn)", key, "turn is not known here; known are left, right, ");
-    assert_refused("abs(turn_rad)", "magnitude(turn_rad)", key, "magnitude() is no function");
+    assert_refused("abs(turn_rad)", "magnitude(turn_rad)", key, "magnitude() is not a known function");
     assert_refused("abs(turn_rad)", "abs(turn_rad", key, "unclosed parenthesis");
     assert_refused("abs(turn_rad)", "echo_cm", key, "echo_cm is not known here");
     assert_refused("bounds = [0.0, 20.0]", "bounds = [20.0, 0.0]", parameter, "bounds [20, 0]");

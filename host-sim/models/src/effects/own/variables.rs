@@ -18,7 +18,7 @@ pub enum Stage {
 
 /// What is known where an expression is evaluated.
 pub struct Circumstances<'a> {
-    /// The step, or the row at its begin.
+    /// The step, or the row at its beginning.
     pub step: &'a StepContext,
     /// Left and right command, now and before.
     pub commands: [[f64; 2]; 2],

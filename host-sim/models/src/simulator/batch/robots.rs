@@ -312,7 +312,7 @@ impl<'a> Robots<'a> {
             let command = run.request.controller.tuples[place];
             let command = [command.left, command.right].map(f32::from);
             let step = match motions.transients() {
-                // Nothing else lies as far back as effects look: the motion goes on.
+                // Nothing else lies as far back as effects look: the motion continues.
                 Some(_) if run.held_steps == HISTORY => continue,
                 Some(transients) if run.held_steps + run.held_before >= HISTORY - 1 => {
                     run.memory.command(command);

@@ -198,7 +198,7 @@ fn effects_act_on_the_robot_as_it_was_known_in_training() {
     let mut beyond_networks_cm: f32 = 0.0;
     for controller in controllers() {
         let (usual_motions, motions) = (usual.motions(&controller), less.motions(&controller));
-        for (tuple, less) in motions.transients().expect("worked out ahead").iter().enumerate() {
+        for (tuple, less) in motions.transients().expect("computed ahead").iter().enumerate() {
             let (expected, less) = (usual_motions.step(tuple, false), less.last().unwrap());
             let (expected, less) = (expected.motion, less.plus(motions.bias(tuple)).motion);
             assert!((less.forward - SHARE as f32 * expected.forward).abs() < 1e-4, "{less:?} {expected:?}");

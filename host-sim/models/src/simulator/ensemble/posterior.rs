@@ -203,7 +203,7 @@ mod tests {
         assert!(at == 0.0 && (deviation - 29f64.sqrt()).abs() < 1.0, "{at} {deviation}");
     }
 
-    /// Where no log has driven, the robot goes on as it did and not as networks happen to.
+    /// Where no log has driven, the robot continues as it did and not as networks happen to extrapolate.
     #[test]
     fn beyond_the_evidence_it_is_the_robot_that_goes_on() {
         let wild = |command: [f64; 2]| {
