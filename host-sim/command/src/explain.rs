@@ -2,6 +2,7 @@
 
 mod entry;
 mod findings;
+mod terms;
 mod topic;
 mod verdicts;
 
@@ -14,10 +15,10 @@ use mindgap_foundations::error::{Error, Result};
 use mindgap_foundations::executor::Executor;
 use topic::{Kind, Topic};
 
-/// Explain an effect, a finding or a verdict: what it is, what imitates it, and how to check it.
+/// Explain an effect, a finding, a verdict or a term: what it is, what imitates it, and how to check it.
 #[derive(Args)]
 pub struct Explain {
-    /// Id as in diagnosis.json or in the report of `check`; all ids are listed if it is omitted.
+    /// Id or term as in diagnosis.json, loop.json or a report; all ids are listed if it is omitted.
     id: Option<String>,
     /// Print the catalogue of all effects as Markdown.
     #[arg(long, conflicts_with = "id")]
@@ -36,7 +37,7 @@ impl Run for Explain {
         };
         let known = topics.iter().map(|topic| topic.id);
         let found = topics.iter().find(|topic| topic.id == id);
-        let unknown = || format!("{id} is not an effect, finding or verdict{}", files::did_you_mean(id, known));
+        let unknown = || format!("{id} is not an effect, finding, verdict or term{}", files::did_you_mean(id, known));
         found.map(Topic::text).ok_or_else(|| Error::new(unknown()))
     }
 }
@@ -55,6 +56,6 @@ fn markdown(topics: &[Topic]) -> String {
     let effects: String = topics.iter().filter(|topic| topic.kind == Kind::Effect).map(Topic::markdown).collect();
     format!(
         "# Effects\n\nEverything that a diagnosis can name, with its parameters in each variant. `mindgap explain ID` prints \
-         the same, and explains findings and verdicts as well.\n{effects}"
+         the same, and explains findings, verdicts and terms as well.\n{effects}"
     )
 }

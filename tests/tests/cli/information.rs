@@ -123,5 +123,5 @@ fn effects_findings_and_verdicts_are_explained() {
     }
     assert!(sandbox.run("explain").starts_with("effects: battery_sag, "));
     let refusal = sandbox.refused("explain payloads");
-    assert_eq!(refusal, "payloads is not an effect, finding or verdict; did you mean payload?");
+    assert_eq!(refusal, "payloads is not an effect, finding, verdict or term; did you mean payload?");
 }

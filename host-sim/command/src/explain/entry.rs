@@ -1,13 +1,13 @@
 //! A fixed explanation.
 
-/// A fixed explanation of a finding or a verdict.
+/// A fixed explanation of a finding, a verdict or a term.
 pub struct Entry {
     /// Id as in JSON.
     pub id: &'static str,
     /// What it is.
     pub what: &'static str,
-    /// What imitates it.
+    /// What imitates it; may be empty.
     pub imitated_by: &'static str,
-    /// How to check it.
+    /// How to check it; may be empty for a term.
     pub check: &'static str,
 }

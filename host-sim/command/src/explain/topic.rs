@@ -1,15 +1,15 @@
 //! What can be explained, as text and Markdown.
 
 use mindgap_diagnosis::budget::{SCATTER, UNEXPLAINED};
-use mindgap_models::effects::signs::signs;
 use mindgap_models::effects::{CATALOGUE, Effect, Parameter, Variant};
 use mindgap_pages::words::{self, Cause};
 
 use super::entry::Entry;
 use super::findings::FINDINGS;
+use super::terms::TERMS;
 use super::verdicts::VERDICTS;
 
-/// An effect, a finding or a verdict with its explanation.
+/// An effect, a finding, a verdict or a term with its explanation.
 pub struct Topic {
     /// Id as in JSON.
     pub id: &'static str,
@@ -33,22 +33,25 @@ pub enum Kind {
     Part,
     /// A defect of logs.
     Finding,
-    /// The verdict of a diagnosis.
+    /// The verdict of a diagnosis or a loop.
     Verdict,
+    /// A word of reports and files.
+    Term,
 }
 
-/// Returns all topics: effects, other parts of a budget, findings, verdicts.
+/// Returns all topics: effects, other parts of a budget, findings, verdicts, terms.
 pub fn all() -> Vec<Topic> {
     let effects = CATALOGUE.iter().copied().map(of_effect);
     let parts = [SCATTER, UNEXPLAINED].into_iter().filter_map(of_part);
     let findings = FINDINGS.iter().map(|entry| of_entry(Kind::Finding, entry));
     let verdicts = VERDICTS.iter().map(|entry| of_entry(Kind::Verdict, entry));
-    effects.chain(parts).chain(findings).chain(verdicts).collect()
+    let terms = TERMS.iter().map(|entry| of_entry(Kind::Term, entry));
+    effects.chain(parts).chain(findings).chain(verdicts).chain(terms).collect()
 }
 
 impl Kind {
     /// All kinds in the order of [`all`].
-    pub const ALL: [Kind; 4] = [Kind::Effect, Kind::Part, Kind::Finding, Kind::Verdict];
+    pub const ALL: [Kind; 5] = [Kind::Effect, Kind::Part, Kind::Finding, Kind::Verdict, Kind::Term];
 
     /// Returns the name of the kind.
     pub fn name(self) -> &'static str {
@@ -57,6 +60,7 @@ impl Kind {
             Kind::Part => "part",
             Kind::Finding => "finding",
             Kind::Verdict => "verdict",
+            Kind::Term => "term",
         }
     }
 }
@@ -79,21 +83,21 @@ impl Topic {
 
     fn lines(&self) -> impl Iterator<Item = (&'static str, &str)> {
         let in_logs = self.in_logs.map(|line| ("in logs", line));
-        let imitated_by = Some(("imitated by", self.imitated_by.as_str())).filter(|(_, line)| !line.is_empty());
+        let fixed = [("imitated by", self.imitated_by.as_str()), ("check", self.check)];
+        let fixed = fixed.into_iter().filter(|(_, line)| !line.is_empty());
         let variants = self.variants.iter().map(|line| ("variant", line.as_str()));
-        in_logs.into_iter().chain(imitated_by).chain([("check", self.check)]).chain(variants)
+        in_logs.into_iter().chain(fixed).chain(variants)
     }
 }
 
 fn of_effect(effect: &'static Effect) -> Topic {
-    let signs = signs(effect.id);
     Topic {
         id: effect.id,
         kind: Kind::Effect,
         name: effect.name,
         what: effect.what,
-        in_logs: signs.map(|signs| signs.in_logs),
-        imitated_by: signs.map_or_else(String::new, |signs| signs.imitated_by.join(", ")),
+        in_logs: Some(effect.in_logs),
+        imitated_by: effect.imitated_by.join(", "),
         check: effect.check,
         variants: effect.variants.iter().map(variant).collect(),
     }
@@ -145,7 +149,10 @@ mod tests {
         let ids: BTreeSet<&str> = topics.iter().map(|topic| topic.id).collect();
         assert_eq!(ids.len(), topics.len());
         for topic in &topics {
-            assert!(topic.what.ends_with('.') && topic.check.ends_with('.'), "{}", topic.id);
+            let may_lack_a_check = topic.kind == Kind::Term && topic.check.is_empty();
+            let is_question = topic.check.ends_with('?');
+            assert!(topic.what.ends_with('.'), "{}", topic.id);
+            assert!(topic.check.ends_with('.') || is_question || may_lack_a_check, "{}", topic.id);
         }
     }
 }

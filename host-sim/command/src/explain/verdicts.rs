@@ -1,4 +1,4 @@
-//! Explanations of the verdicts of a diagnosis.
+//! Explanations of the verdicts of a diagnosis and of a loop.
 
 use super::entry::Entry;
 
@@ -29,5 +29,25 @@ pub const VERDICTS: &[Entry] = &[
         imitated_by: "a defect of the logs, or several weak effects of which none is confirmed on the held-out runs",
         check: "See where the gap is and what it depends on, run `mindgap check` on the logs, and state a suspected cause \
                 as an effect of your own with `--effects`.",
+    },
+    Entry {
+        id: "works",
+        what: "The loop ended with a controller that succeeded on the robot often enough and has a high success probability.",
+        imitated_by: "",
+        check: "Drive `controller.toml` from the same start a few more times.",
+    },
+    Entry {
+        id: "trials_exhausted",
+        what: "The loop used up its trials before a controller was confirmed.",
+        imitated_by: "",
+        check: "See the last line of the report. If noise is the limit, more trials hardly help; otherwise call the loop \
+                again with more `--trials`.",
+    },
+    Entry {
+        id: "infeasible",
+        what: "The loop found no controller that reaches the target on any plausible robot.",
+        imitated_by: "",
+        check: "Look at the scene: is the target within reach of six tuples, and does the sensor see something where the \
+                robot has to turn?",
     },
 ];
