@@ -5,6 +5,7 @@
 //! * [`nxc`], [`rxe`], [`c`], [`rust`], [`arduino`], [`pybricks`]: a controller as source code or as an executable.
 //! * [`nxc_networks`], [`c_networks`], [`rust_networks`]: networks in fixed point; [`pybricks_networks`]: in floating
 //!   point. NXC and C read the same table, [`tabulated`].
+//! * [`c_monitor`], [`rust_monitor`]: the onboard monitor of a simulator, as C99 and as Rust.
 //! * [`collect`], [`pybricks_collect`]: a program that drives and logs.
 //! * [`brick`]: the emulator, with which tests show that all formats behave alike.
 //! * [`wiring`], [`names`], [`onboard`], [`origin`], [`budget`]: what the formats share: ports, file names on the brick,

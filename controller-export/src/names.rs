@@ -40,7 +40,7 @@ impl BrickName {
 
 /// The names of a program's logs. Every start of the program writes a new one: `avoid_000.csv`, `avoid_001.csv` and so on.
 ///
-/// Programs that collect data call theirs `run-000.csv`, which no other program can.
+/// Programs that collect data name theirs `run-000.csv`; the hyphen keeps these names apart from those of other programs.
 ///
 /// ```
 /// use mindgap_controller_export::names::RunLogs;

@@ -9,7 +9,7 @@
 //!   [`Scalar`](scalar::Scalar).
 //! * [`fixed_network`]: folded networks in fixed point, built on the numbers and functions of [`fixed_point`].
 //! * [`chance`]: random draws in fixed point: whether an echo returns, and the noise of a reading.
-//! * [`monitor`]: evidence on board that a robot is no longer what its simulator knows.
+//! * [`monitor`]: onboard monitor that detects when a robot no longer matches its simulator.
 //! * [`maths`]: powers, logarithms and sines in `f32`, with the same bits on every machine.
 //! * [`scalar`], [`pair`]: the numbers that networks are evaluated on.
 //! * [`limits`]: the memory of an NXT-class brick, checked when this crate is compiled.

@@ -72,10 +72,10 @@ const ABSURD: i32 = 12 << INNOVATION_BITS;
 /// Everything that a monitor knows about an unchanged robot besides its networks. A host computes it from a simulator file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Law<'a> {
-    /// Makes a share of full speed with [`SHARE_BITS`] of a command in Q16.16; less than one.
+    /// Converts a command (percent of full power, Q16.16) to a fraction of full speed with [`SHARE_BITS`]; the result is below one.
     pub share_of_command: Factor,
-    /// Make wheel travel with [`TRAVEL_BITS`] of predictions in Q16.16: of half the way forward, and of the turn at a wheel; at most
-    /// one, which is travel at full speed.
+    /// Convert predictions in Q16.16 (forward in cm, turn in degrees) to wheel travel as a fraction of the travel at full speed, with
+    /// [`TRAVEL_BITS`], at most one: half the forward motion, and the arc of the turn at a wheel. By channel.
     pub travel: [Factor; CHANNELS],
     /// Difference of both wheels' travel, with [`TRAVEL_BITS`], up to which a robot has gone straight.
     pub straight_travel: i16,
@@ -87,8 +87,9 @@ pub struct Law<'a> {
     pub correction: Correction<'a>,
     /// How residuals become innovations, by channel.
     pub whitening: [Whitening; CHANNELS],
-    /// By how many units of residuals each response of one wheel shifts them in each channel if its smaller alternative is right,
-    /// with [`TRAVEL_BITS`]; at most [`MOST_FACTOR`]. In the turn the left wheel has the opposite sign.
+    /// Shift of the residual of each channel per unit response of one wheel, under the smaller size of the alternative; in units of
+    /// the residual, with [`TRAVEL_BITS`]; at most [`MOST_FACTOR`]. Indexed `[channel][response]`. In the turn channel, the left
+    /// wheel has the opposite sign.
     pub factors: [[i16; RESPONSES]; CHANNELS],
     /// The sign of a wheel's travel, which has the factor of that, with [`TRAVEL_BITS`]; at most [`MOST_SIGN`]. It is less
     /// where a wheel hardly moves.
@@ -102,9 +103,9 @@ pub struct Law<'a> {
 /// What happened in a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Step {
-    /// Left, right, previous left and previous right command.
+    /// Left, right, previous left and previous right command, in percent of full power (-100..=100), Q16.16.
     pub commands: [I16F16; 4],
-    /// Way forward in cm and turn to the left in degrees by the networks.
+    /// Forward motion in cm and counter-clockwise turn in degrees during the step, as predicted by the networks; Q16.16.
     pub predicted: [I16F16; CHANNELS],
     /// The same as measured; `None` if the tracker lost the robot.
     pub measured: Option<[I16F16; CHANNELS]>,
@@ -149,7 +150,7 @@ pub struct Alarm {
 pub enum Outcome {
     /// The step was compared, and there has been no alarm.
     Quiet,
-    /// The step added no evidence: it was not measured, or absurdly.
+    /// The step added no evidence: it had no measurement, or an implausible one.
     Paused,
     /// There has been an alarm, in this step or before.
     Changed(Alarm),
@@ -171,7 +172,7 @@ impl Monitor {
         }
     }
 
-    /// A new run begins, from rest. Evidence and alarm stay.
+    /// Starts a new run, from rest. Keeps the evidence and the alarm.
     pub fn start_run(&mut self) {
         self.lose_track();
         self.travel_before = [0; 2];

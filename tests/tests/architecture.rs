@@ -12,7 +12,7 @@ fn text() -> String {
 }
 
 fn order() -> Order {
-    Order::parse(&text(), "## Which crate may know which")
+    Order::parse(&text(), "## Allowed dependencies between crates")
 }
 
 fn read(path: &str) -> String {

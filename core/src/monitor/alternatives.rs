@@ -20,7 +20,7 @@ pub const DIRECTIONS: usize = 10;
 pub const HAS_OPPOSITE: [bool; SIGNALS] = [false, false, true, true, true, false, false];
 /// Sizes in which each direction is tried.
 pub const SIZES: usize = 2;
-/// By how much the larger size is larger.
+/// Ratio of the larger size to the smaller one.
 pub const LARGER: i32 = 3;
 /// Number of alternatives: directions in all sizes, and wider residuals of each channel.
 pub const ALTERNATIVES: usize = DIRECTIONS * SIZES + CHANNELS;

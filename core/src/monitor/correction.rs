@@ -22,8 +22,8 @@ const BITS: u32 = SHARE_BITS - POINTS_PER_SHARE;
 pub struct Correction<'a> {
     /// Values for each channel at equidistant shares of full speed from -1 to 1, of differences from -2 to 2.
     pub functions: &'a [[[i16; CHANNELS]; POINTS]; FUNCTIONS],
-    /// Power of two that makes numbers with [`RESIDUAL_BITS`](super::RESIDUAL_BITS) of a channel's values, at most
-    /// [`MOST_SHIFT`].
+    /// Left shift that converts the values of each channel to [`RESIDUAL_BITS`](super::RESIDUAL_BITS) fractional bits (cm, degrees),
+    /// at most [`MOST_SHIFT`].
     pub shifts: [u8; CHANNELS],
 }
 

@@ -11,7 +11,7 @@ pub struct Factor {
     pub factor: i16,
     /// How many bits a number loses first, at most 31.
     pub shift: u8,
-    /// What is larger in size then counts as this.
+    /// Limit on the magnitude of the shifted number; larger ones are clamped.
     pub most: i16,
 }
 

@@ -3,10 +3,10 @@
 use super::INNOVATION_BITS;
 use super::factor::Factor;
 
-/// Number of steps of a held command with gains of their own; later ones have those of the last.
+/// Number of steps under a held command that have separate gains. Later steps use the gains of the last one.
 pub const HELD: usize = 8;
 
-/// Number of travels with a noise of their own.
+/// Number of travel bins with separate noise levels.
 pub const TRAVELS: usize = 8;
 
 /// The filter of one channel.

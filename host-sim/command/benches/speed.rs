@@ -31,7 +31,7 @@ fn main() {
     divan::main();
 }
 
-/// What is worked out in a step, beside geometry, draws and the controller.
+/// What is computed in a step, besides geometry, draws and the controller.
 #[derive(Clone, Copy, Debug)]
 enum Step {
     /// All five networks.
@@ -60,7 +60,7 @@ fn robot_steps(bencher: Bencher, step: Step) {
         Step::FiveNetworks => environment.asking_every_step(),
         _ => environment,
     };
-    // It turns on the spot, and no reading is below zero: every run goes on to its last step.
+    // It turns on the spot, and no reading is below zero: every run continues to its last step.
     let turning = Tuple { left: 30, right: -30, when: When::Smaller, threshold_cm: 0 };
     let controller = &Controller { step_ms: 400, max_steps: MAX_STEPS, tuples: [turning; 6] };
     let motions = &environment.motions(controller);

@@ -40,10 +40,10 @@ enum Part {
         /// Random seed.
         #[arg(long, value_name = "N", default_value_t = 1)]
         seed: u64,
-        /// Set from which effects unknown to the diagnosis are drawn.
+        /// Set of unknown effects: effects outside the catalogue are drawn from it.
         #[arg(long, value_parser = one_of::<Outside>(OUTSIDE), default_value = "usual")]
         outside: Outside,
-        /// Give all robots a sensor whose echoes depend on the place more than on chance, differently in every room.
+        /// Give all robots a sensor whose echo strength depends more on location than on random noise, with a different pattern in each room.
         #[arg(long)]
         place_bound: bool,
         #[command(flatten)]
@@ -101,7 +101,7 @@ enum Part {
         /// Also write the outcome of every case as CSV.
         #[arg(long, value_name = "FILE")]
         csv: Option<PathBuf>,
-        /// Also write the form errors with which intervals would hold; builds use host-sim/diagnosis/src/form_errors.toml.
+        /// Also write the form errors that would give 95 % intervals their nominal coverage; builds use host-sim/diagnosis/src/form_errors.toml.
         #[arg(long, value_name = "FILE")]
         form_errors: Option<PathBuf>,
     },

@@ -22,14 +22,14 @@ use mindgap_workers::program::Program;
 /// A robot that is driven until one name is left.
 #[derive(Args)]
 pub struct DriveOptions {
-    /// Drive proposed scripts on the robot until one cause is left: COMMAND SCRIPT.csv OUT.csv SEED has to drive a script once and
-    /// write its log. Words are grouped by quotes as in a shell, but no shell runs.
+    /// Drive proposed scripts on the robot until one cause is left: Mindgap calls COMMAND SCRIPT.csv OUT.csv SEED, which must
+    /// drive the script once and write its log. Quotes group words as in a shell, but no shell is started.
     #[arg(long, value_name = "COMMAND", requires = "runs", conflicts_with = "controller")]
     drive: Option<String>,
     /// Maximum number of runs to drive.
     #[arg(long, value_name = "N", requires = "drive", value_parser = value_parser!(u32).range(1..=999))]
     runs: Option<u32>,
-    /// Folder in which the scripts and their logs stay; with those of an earlier call it is resumed.
+    /// Folder to keep the scripts and their logs in. If it contains those of an earlier call, that series is resumed.
     #[arg(long, value_name = "DIR", requires = "drive")]
     out: Option<PathBuf>,
     /// Timeout of one call of the command, s. It then receives SIGTERM, with everything that it started, and SIGKILL three

@@ -25,8 +25,8 @@ pub struct General {
     /// Log decisions to standard error.
     #[arg(short, long, global = true)]
     verbose: bool,
-    /// Let mindgap.toml next to the logs set this option, although it decides what is run or written; repeatable. Example:
-    /// loop.robot.
+    /// Let a mindgap.toml next to the logs set this option, which would otherwise be refused because it names a program to run or a
+    /// file to write; repeatable. Example: loop.robot.
     #[arg(long, global = true, value_name = "COMMAND.OPTION")]
     pub allow: Vec<String>,
 }

@@ -14,7 +14,10 @@ const WORK: &[Part] = &[
         &[
             ("new", "mindgap new my-robot"),
             ("record", "mindgap record --out logs --runs 24 --effect slip"),
-            ("import", "mindgap import --help"),
+            (
+                "import",
+                "mindgap import run-000.csv track.csv --scene scene.toml --robot robot.toml --out logs\n  mindgap import streams recordings/*.csv --robot robot.toml --out logs\n  mindgap import bag recordings/drive --robot robot.toml --out logs",
+            ),
             ("check", "mindgap check logs"),
         ],
     ),
@@ -64,7 +67,10 @@ const WORK: &[Part] = &[
             ),
             ("bundle", "mindgap bundle simulator.json logs --out wrong.zip"),
             ("explain", "mindgap explain payload"),
-            ("challenge", "mindgap challenge --help"),
+            (
+                "challenge",
+                "mindgap challenge make --cases 40 --out blind\n  mindgap challenge answer blind\n  mindgap challenge score blind",
+            ),
             ("serve", "mindgap serve --port 8000    for people who prefer a browser"),
         ],
     ),

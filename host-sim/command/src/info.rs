@@ -27,7 +27,7 @@ use mindgap_logs::{Logs, Robot, Run, Scene};
 use mindgap_models::effects::own;
 use mindgap_models::simulator::Simulator;
 
-/// Identify files or folders and summarise their contents: of recordings the columns or topics, rates, time span and bodies.
+/// Identify files or folders and summarise their contents: for recordings, the columns or topics, rates, time span and bodies.
 #[derive(Args)]
 pub struct Info {
     /// Files or folders to identify.

@@ -12,7 +12,7 @@ use mindgap_foundations::executor::Executor;
 use mindgap_models::simulator::monitor::findings::{AlarmFound, Findings};
 use mindgap_models::simulator::monitor::replay::Replay;
 
-/// Replay logs through the monitor on board: whether the robot is still what its simulator knows.
+/// Replay logs through the onboard monitor to see whether the robot still matches its simulator.
 ///
 /// The monitor is that of `mindgap export SIM --format c --monitor`, and so is every bit of its evidence.
 #[derive(Args)]
@@ -45,7 +45,7 @@ impl Run for Monitor {
 fn describe(findings: &Findings) -> String {
     let Findings { steps, paused, threshold_nats, evidence, alarm, .. } = findings;
     let first = match alarm {
-        None => "No alarm: the robot is what its simulator knows.\n".to_owned(),
+        None => "No alarm: the robot matches its simulator.\n".to_owned(),
         Some(AlarmFound { what, size, unit, began, raised, .. }) => {
             let size = size.zip(*unit).map_or(String::new(), |(size, unit)| format!(", about {size:.3} ({unit})"));
             format!(

@@ -122,7 +122,7 @@ impl Run for Train {
             )
         };
         let text = format!(
-            "{filter}networks evaluated over all samples: {}\nsimulator written to {}\n",
+            "{filter}passes over all samples, per network: {}\nsimulator written to {}\n",
             counts.join(", "),
             self.out.display()
         );

@@ -433,14 +433,14 @@ fn site<'t, 'a>(xml: &'t Xml<'a>) -> std::result::Result<Node<'t, 'a>, String> {
     site.ok_or_else(|| format!("site {name} of the rangefinder is not in the file"))
 }
 
-/// Returns what is known of angles: whether they are degrees, and in which sequence three of them turn.
+/// Returns an attribute of the element `compiler`.
 fn compiler<'t>(xml: &'t Xml, name: &str) -> Option<&'t str> {
     let root = xml.tree.root_element();
     child(root, "compiler").and_then(|compiler| compiler.attribute(name))
 }
 
-/// Returns the source of an attribute, for messages.
 impl Source<'_, '_> {
+    /// Returns the path of the attribute's node, for messages.
     fn path(&self) -> String {
         xpath(self.node)
     }

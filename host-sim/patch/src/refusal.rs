@@ -4,7 +4,7 @@
 pub fn of_any_format(effect: &str) -> Option<&'static str> {
     Some(match effect {
         "scatter" => "the robot scatters more than its simulator: add noise in the driver",
-        "battery_sag" => "no model file has a battery that weakens a drive: lower the driver's gain as the run goes on",
+        "battery_sag" => "no model file has a battery that weakens a drive: lower the driver's gain during the run",
         "turn_loss" => "no tag costs way while turning: lower the driver's forward speed by the turn rate",
         "turn_lag" => "no tag lets the body turn later than its wheels: filter the turn rate in the driver",
         "carpet_nap" => "friction has no direction on a floor: it belongs to the world, not to the robot",

@@ -125,7 +125,7 @@ fn link<'t, 'a>(xml: &'t Xml<'a>, name: &str) -> Option<Node<'t, 'a>> {
     root.children().find(|node| node.has_tag_name("link") && node.attribute("name") == Some(name))
 }
 
-/// Returns the joints of the driven wheels: those that the plug-in names, or else all that turn on and on.
+/// Returns the joints of the driven wheels: those that the plug-in names, or else all continuous and revolute ones.
 fn wheels<'t, 'a>(xml: &'t Xml<'a>) -> std::result::Result<Sides<Node<'t, 'a>>, String> {
     if let Some(driven) = gazebo::driven(xml, |name| joint(xml, name)) {
         return Ok(driven);
