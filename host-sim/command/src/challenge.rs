@@ -68,6 +68,9 @@ enum Part {
         /// Also write the measurements of every case as CSV.
         #[arg(long, value_name = "FILE")]
         csv: Option<PathBuf>,
+        /// Also write how much a better form of each effect could gain; builds use host-sim/diagnosis/src/further_shares.toml.
+        #[arg(long, value_name = "FILE")]
+        further_shares: Option<PathBuf>,
         #[command(flatten)]
         size: SizeOption,
         #[command(flatten)]
@@ -128,7 +131,10 @@ impl Run for Challenge {
         let places = Places::default().writing(checkpoint, kinds::CHECKPOINT);
         match &self.part {
             Part::Make { out, .. } => places.filling([out]),
-            Part::Calibrate { out, csv, .. } => places.writing([out], kinds::CALIBRATION).writing(csv, kinds::UNSIGNED),
+            Part::Calibrate { out, csv, further_shares, .. } => places
+                .writing([out], kinds::CALIBRATION)
+                .writing(further_shares, kinds::CALIBRATION)
+                .writing(csv, kinds::UNSIGNED),
             Part::Sensitivity { csv, .. } => places.writing(csv, kinds::UNSIGNED),
             Part::Answer { folder, .. } => places.reading([folder]).filling([&Folder(folder).answers()]),
             Part::Score { folder, json, csv, form_errors } => places
@@ -149,15 +155,18 @@ impl Run for Challenge {
                 bar.finish_and_clear();
                 Ok(format!("{}: {cases} cases; sealed.json holds the injected faults\n", out.display()))
             }
-            Part::Calibrate { cases, seed, out, csv, size, .. } => {
+            Part::Calibrate { cases, seed, out, csv, further_shares: shares, size, .. } => {
                 let bar = progress::bar(u64::from(*cases));
-                let (calibration, measured) =
+                let (calibration, further_shares, measured) =
                     calibrate(executor, *cases as usize, *seed, size.size(), progress::counting(&bar))?;
                 bar.finish_and_clear();
                 let quick = if size.quick { " --quick" } else { "" };
                 let command =
                     format!("mindgap challenge calibrate --cases {cases} --seed {seed}{quick} --out {}", out.display());
                 files::write(out, calibration.to_text(&command))?;
+                if let Some(path) = shares {
+                    files::write(path, further_shares.to_text(&command))?;
+                }
                 if let Some(path) = csv {
                     files::write_csv(path, &measured)?;
                 }

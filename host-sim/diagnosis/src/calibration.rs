@@ -24,7 +24,7 @@ pub struct Calibration {
     /// Gate of a remainder in a channel, and of wider noise, nats.
     pub remainder_nats: f64,
     /// Fraction of what effects explain in a channel that model-form error could account for: a further effect has to gain that
-    /// much more there.
+    /// much more there. Some effects have [their own](super::further_shares::FurtherShares).
     pub further_share: f64,
     /// The thresholds that are not calibrated.
     pub judgement: Judgement,

@@ -12,6 +12,7 @@ use rayon::prelude::*;
 
 use super::calibration::Calibration;
 use super::explanation::Explanation;
+use super::further_shares::FurtherShares;
 use super::hypothesis::Hypothesis;
 use super::method::Method;
 use super::motion_uncertainty::MotionUncertainty;
@@ -37,6 +38,8 @@ pub struct FitContext<'a> {
     pub catalogue: Vec<&'static Effect>,
     /// Thresholds for this number of rows.
     pub calibration: Calibration,
+    /// Model-form error by effect.
+    pub further_shares: &'static FurtherShares,
     /// Seed of random draws.
     pub seed: u64,
     /// See [`Method::is_driving`].
@@ -87,6 +90,7 @@ impl<'a> FitContext<'a> {
             rows,
             catalogue: candidates(method, rows),
             calibration: method.calibration_for(rows.rows.len(), rows.baseline.trained_on()),
+            further_shares: method.further_shares,
             seed: method.seed,
             is_driving: method.is_driving,
             motion_uncertainty: MotionUncertainty::of(rows),

@@ -17,7 +17,7 @@ impl Fits {
     pub fn form_error_fraction(&self, id: &str, context: &FitContext, hold_out: Option<&HoldOut>) -> Option<f64> {
         let neighbours = Neighbours::default();
         let usual = Selection::new(self, &neighbours, context);
-        let selection = |form_error: f64| Selection { form_error, ..usual };
+        let selection = |form_error: f64| Selection { form_error: Some(form_error), ..usual };
         let singles = best_of_each(self.singles.clone());
         let found = usual.first(&singles).filter(|found| found.ids() == [id])?;
         let mut further = usual.with_one_more(found);

@@ -23,6 +23,7 @@ pub mod explanation;
 pub mod fit;
 mod form_error;
 pub mod formula;
+pub mod further_shares;
 pub mod gain;
 mod gap_parts;
 pub mod hypothesis;

@@ -1,6 +1,7 @@
 //! The settings of a diagnosis.
 
 use super::calibration::Calibration;
+use super::further_shares::FurtherShares;
 use mindgap_foundations::channel::Channel;
 use mindgap_models::effects::{CATALOGUE, Effect, Place};
 
@@ -13,6 +14,8 @@ pub struct Method {
     pub place: Option<Place>,
     /// The thresholds.
     pub calibration: Calibration,
+    /// Model-form error by effect.
+    pub further_shares: &'static FurtherShares,
     /// Seed of bootstrap intervals and simulated noise. The verdict does not depend on it.
     pub seed: u64,
     /// Whether a robot is there to drive what is proposed: then a script is proposed even between names that are not certain
@@ -33,7 +36,13 @@ impl Method {
 
 impl Default for Method {
     fn default() -> Self {
-        let calibration = Calibration::shipped();
-        Method { catalogue: CATALOGUE, place: None, calibration, seed: Method::SEED, is_driving: false }
+        Method {
+            catalogue: CATALOGUE,
+            place: None,
+            calibration: Calibration::shipped(),
+            further_shares: FurtherShares::shipped(),
+            seed: Method::SEED,
+            is_driving: false,
+        }
     }
 }

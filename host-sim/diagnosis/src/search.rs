@@ -42,8 +42,8 @@ pub(super) struct Selection<'a> {
     pub fits: &'a Fits,
     pub neighbours: &'a Neighbours,
     pub context: &'a FitContext<'a>,
-    /// Fraction of what effects explain in a channel that a better form of them could gain there.
-    pub form_error: f64,
+    /// Fraction of what effects explain in a channel that a better form of them could gain there; `None` for the calibrated one.
+    pub form_error: Option<f64>,
     /// The first of the chosen effects are not swapped or pruned: this number of them is free under every hypothesis.
     pub always_free: usize,
 }
@@ -94,7 +94,7 @@ impl Search {
 
 impl<'a> Selection<'a> {
     pub fn new(fits: &'a Fits, neighbours: &'a Neighbours, context: &'a FitContext<'a>) -> Self {
-        Selection { fits, neighbours, context, form_error: context.calibration.further_share, always_free: 0 }
+        Selection { fits, neighbours, context, form_error: None, always_free: 0 }
     }
 
     fn select(&self) -> Fitted {
@@ -175,7 +175,8 @@ impl<'a> Selection<'a> {
     }
 
     fn further_gain(&self, fit: &Fitted, others: &Fitted) -> FurtherGain {
-        FurtherGain::of(fit, others, &self.fits.null, self.form_error, self.context)
+        let form_error = self.form_error.unwrap_or_else(|| calibrated_form_error(others, self.context));
+        FurtherGain::of(fit, others, &self.fits.null, form_error, self.context)
     }
 
     /// Returns whether the effect that was added last counts. A parameter at a bound rules it out: the likelihood would rise
@@ -242,6 +243,15 @@ impl<'a> Selection<'a> {
         };
         (self.always_free..chosen.ids().len()).map(slot).collect()
     }
+}
+
+/// Returns the fraction of what effects explain that a better form of them could gain: that of the effect whose form is the
+/// worst. What is free under every hypothesis is no finding, and has the usual one.
+fn calibrated_form_error(effects: &Fitted, context: &FitContext) -> f64 {
+    let free = always_free(context);
+    let found = effects.hypothesis.candidates.iter().filter(|candidate| !free.contains(candidate));
+    let own = context.further_shares.largest(found.map(|candidate| candidate.effect));
+    own.max(context.calibration.further_share)
 }
 
 /// Returns what is free under every hypothesis against this baseline.

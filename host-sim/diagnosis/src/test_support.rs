@@ -1,10 +1,13 @@
 //! Made-up robots, rows, effects and fits, simple enough that the right answer of each stage is known in closed form.
 
+use std::collections::BTreeMap;
+
 use glam::DVec2;
 
 use super::calibration::{Calibration, Judgement};
 use super::confirm::Confirmed;
 use super::fit::{FitContext, Fitted};
+use super::further_shares::FurtherShares;
 use super::hypothesis::Hypothesis;
 use super::method::Method;
 use super::sample::Identification;
@@ -273,8 +276,16 @@ pub const CALIBRATION: Calibration = Calibration {
 };
 
 /// The method with [`CATALOGUE`] and [`CALIBRATION`].
-pub const METHOD: Method =
-    Method { catalogue: CATALOGUE, place: None, calibration: CALIBRATION, seed: 1, is_driving: false };
+pub const METHOD: Method = Method {
+    catalogue: CATALOGUE,
+    place: None,
+    calibration: CALIBRATION,
+    further_shares: &NO_FURTHER_SHARES,
+    seed: 1,
+    is_driving: false,
+};
+
+static NO_FURTHER_SHARES: FurtherShares = FurtherShares::new(BTreeMap::new());
 
 /// Returns the first variant of an effect.
 pub fn candidate(effect: &'static Effect) -> Candidate {

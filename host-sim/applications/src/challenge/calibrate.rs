@@ -14,6 +14,7 @@ use mindgap_diagnosis::Method;
 use mindgap_diagnosis::calibration::Calibration;
 use mindgap_diagnosis::diagnose::{confirmed, statistics};
 use mindgap_diagnosis::explanation::Explanation;
+use mindgap_diagnosis::further_shares::FurtherShares;
 use mindgap_diagnosis::gain::Gain;
 use mindgap_diagnosis::verdict::Explained;
 use mindgap_foundations::counter::Counter;
@@ -52,8 +53,8 @@ pub struct Measured {
 /// Minimum number of cases.
 const FEWEST: usize = 40;
 
-/// Returns the thresholds fitted to `count` cases, and the measurements of each. `watch` is called with the number of
-/// finished cases and the total.
+/// Returns the thresholds fitted to `count` cases, the model-form error by effect, and the measurements of each case. `watch` is
+/// called with the number of finished cases and the total.
 ///
 /// # Errors
 /// If there are too few cases.
@@ -63,7 +64,7 @@ pub fn calibrate(
     seed: u64,
     size: Size,
     watch: impl Fn(usize, usize) + Sync,
-) -> Result<(Calibration, Vec<Measured>)> {
+) -> Result<(Calibration, FurtherShares, Vec<Measured>)> {
     if count < FEWEST {
         return Err(Error::new(format!("{count} cases are too few: give at least {FEWEST}")));
     }
@@ -79,7 +80,9 @@ pub fn calibrate(
         counted(with_effects(&bench, others[other], open)).map(with_rivals)
     })?;
     let others: Vec<Measured> = others.into_iter().map(|(rivals, measured)| Measured { rivals, ..measured }).collect();
-    Ok((fitting::weighed(open, &others), nulls.into_iter().chain(others).collect()))
+    let calibration = fitting::weighed(open, &others);
+    let further_shares = fitting::further_shares(&others, calibration.further_share);
+    Ok((calibration, further_shares, nulls.into_iter().chain(others).collect()))
 }
 
 fn without_effect(bench: &Bench, number: usize) -> Result<Measured> {

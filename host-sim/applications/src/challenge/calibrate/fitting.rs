@@ -1,7 +1,10 @@
 //! Fits each threshold to the measurements by its own criterion.
 
+use std::collections::BTreeMap;
+
 use super::Measured;
 use mindgap_diagnosis::calibration::{CALIBRATED_STEPS, Calibration, Judgement};
+use mindgap_diagnosis::further_shares::FurtherShares;
 use mindgap_diagnosis::verdict::{Explained, probability};
 
 /// Share of the cases without effects that pass the gate for an effect. A gain on held-out runs is required as well: fewer
@@ -11,6 +14,11 @@ const FALSE_EFFECTS: f64 = 0.02;
 const FALSE_REMAINDERS: f64 = 0.02;
 /// Share of the cases with one effect to which a false second effect is added.
 const FALSE_FURTHER: f64 = 0.05;
+/// Fewer cases than this measure no model-form error of an effect.
+const FEWEST_OF_EFFECT: usize = 3;
+/// More than this is not what a form lacks: a second effect imitates the first, as carpet nap does slope. Between the two lie
+/// no cases of 240, from 0.13 to 0.54.
+const LARGEST_FORM_ERROR: f64 = 0.3;
 /// Provisional threshold for further effects, until the model-form error of the first ones is known.
 const FIRST_SHARE: f64 = 0.05;
 /// Share of the sample from which the tail distribution is estimated.
@@ -57,7 +65,7 @@ pub fn weighed(open: Calibration, others: &[Measured]) -> Calibration {
     let answered: Vec<&Measured> = others.iter().filter(|m| !m.first.is_empty()).collect();
     let right = answered.iter().filter(|m| m.first_is_there());
     let adequate = 1.0 - OTHER_ROBOTS * (1.0 - quantile(right.map(|m| m.explained_fraction).collect(), FALSE_UNKNOWNS));
-    let form_errors: Vec<f64> = others.iter().filter_map(|m| m.form_error_fraction).collect();
+    let form_errors: Vec<f64> = form_errors(others).map(|(_, fraction)| fraction).collect();
     let further_share =
         if form_errors.is_empty() { open.further_share } else { quantile(form_errors, 1.0 - FALSE_FURTHER) };
     let settled = Calibration { adequate: rounded(adequate), further_share: rounded(further_share), ..open };
@@ -72,6 +80,25 @@ pub fn weighed(open: Calibration, others: &[Measured]) -> Calibration {
         (known.iter().map(|m| m.log_likelihood(&calibration)).sum::<f64>(), calibration)
     });
     tried.max_by(|a, b| a.0.total_cmp(&b.0)).map_or(settled, |(_, calibration)| calibration)
+}
+
+/// Returns the model-form error of each effect for which it is larger than the usual fraction. It is the largest of few, which
+/// the next one exceeds in one case of n + 1, so that it is raised by one n-th.
+pub fn further_shares(others: &[Measured], usual: f64) -> FurtherShares {
+    let mut by_effect: BTreeMap<&str, Vec<f64>> = BTreeMap::new();
+    form_errors(others).for_each(|(effect, fraction)| by_effect.entry(effect).or_default().push(fraction));
+    let raised = |(effect, fractions): (&str, Vec<f64>)| {
+        let n = fractions.len();
+        let raised = quantile(fractions, 1.0 - FALSE_FURTHER) * (1.0 + 1.0 / n as f64);
+        (n >= FEWEST_OF_EFFECT && raised > usual).then(|| (effect.to_owned(), rounded(raised)))
+    };
+    FurtherShares::new(by_effect.into_iter().filter_map(raised).collect())
+}
+
+/// Returns the effect and the model-form error of each case in which it was measured.
+fn form_errors(others: &[Measured]) -> impl Iterator<Item = (&str, f64)> {
+    let measured = others.iter().filter_map(|m| Some((m.truth.as_str(), m.form_error_fraction?)));
+    measured.filter(|(_, fraction)| *fraction <= LARGEST_FORM_ERROR)
 }
 
 impl Measured {
@@ -134,6 +161,20 @@ mod tests {
     fn gates_pass_the_specified_share_of_false_alarms() {
         let nats = open(&nulls()).effect_nats;
         assert!((nats - 4.0 * libm::log(1.0 / FALSE_EFFECTS)).abs() < 0.4, "{nats}");
+    }
+
+    #[test]
+    fn effects_of_poor_form_have_their_own_share() {
+        let of = |truth: &str, fraction: f64| Measured {
+            truth: truth.into(),
+            form_error_fraction: Some(fraction),
+            ..measured(1.0, 0.9, 0.0)
+        };
+        let cases = [("slip", [0.1, 0.15, 0.05]), ("slope", [0.01, 0.01, 1.0]), ("latency", [0.2, 1.0, 1.0])];
+        let cases: Vec<Measured> =
+            cases.iter().flat_map(|(truth, fractions)| fractions.map(|fraction| of(truth, fraction))).collect();
+        let found = further_shares(&cases, 0.02);
+        assert_eq!(found, FurtherShares::new([("slip".to_owned(), 0.2)].into()), "slope is as usual, latency too rare");
     }
 
     #[test]
