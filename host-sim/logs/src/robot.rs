@@ -78,17 +78,28 @@ impl Robot {
             full_speed_cm_s: file.full_speed_cm_s,
             ultrasonic,
         };
-        let positive = [
-            ("wheel_diameter_cm", robot.wheel_diameter_cm),
-            ("track_cm", robot.track_cm),
-            ("body_radius_cm", robot.body_radius_cm),
-            ("step_ms", robot.step_ms),
-            ("full_speed_cm_s", robot.full_speed_cm_s),
-        ];
-        if let Some((name, value)) = positive.iter().find(|(_, v)| !(*v > 0.0 && *v < 1e5)) {
-            return Err(Error::in_file(path, format!("{name} = {value} must lie between 0 and 100000")));
-        }
+        robot.check().map_err(|why| Error::in_file(path, why))?;
         Ok((robot, sensors))
+    }
+
+    /// Checks that the numbers are those of a possible robot.
+    ///
+    /// # Errors
+    /// Names the first number that is not.
+    pub fn check(&self) -> std::result::Result<(), String> {
+        let numbers = [
+            ("wheel_diameter_cm", self.wheel_diameter_cm),
+            ("track_cm", self.track_cm),
+            ("body_radius_cm", self.body_radius_cm),
+            ("step_ms", self.step_ms),
+            ("full_speed_cm_s", self.full_speed_cm_s),
+        ];
+        match numbers.iter().find(|(_, number)| !POSSIBLE.contains(number)) {
+            Some((name, value)) => {
+                Err(format!("{name} = {value} must lie between {} and {}", POSSIBLE.start(), POSSIBLE.end()))
+            }
+            None => Ok(()),
+        }
     }
 
     /// Returns the pose of the sensor on the robot at `pose`; of a robot without one, `pose`.
@@ -156,6 +167,8 @@ fn possible_sensor<'de, D: Deserializer<'de>>(from: D) -> std::result::Result<Op
     }
 }
 
+/// Numbers of possible robots, in cm, ms and cm/s. Products and quotients of these do not overflow.
+const POSSIBLE: std::ops::RangeInclusive<f64> = 1e-3..=1e5;
 /// Two people who measure one robot agree to this share.
 const SAME: f64 = 0.02;
 

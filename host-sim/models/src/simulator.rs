@@ -237,6 +237,14 @@ impl Simulator {
     }
 
     fn check(&self, path: &Path) -> Result<()> {
+        self.robot.check().map_err(|why| Error::in_file(path, format!("robot: {why}")))?;
+        let [slowest, fastest] = self.commands;
+        if !(slowest.is_finite() && fastest.is_finite() && slowest <= fastest) {
+            return Err(Error::in_file(
+                path,
+                format!("commands [{slowest}, {fastest}] must be the smallest and the largest"),
+            ));
+        }
         for added in &self.added {
             let what = format!("the added effect {} ({})", added.effect, added.variant);
             added.resolve(&self.robot).map_err(|why| Error::in_file(path, format!("{what} is not possible: {why}")))?;
@@ -247,19 +255,18 @@ impl Simulator {
         if self.ensemble.as_ref().is_some_and(|ensemble| !ensemble.is_sound()) {
             return Err(Error::in_file(path, "the distribution over robots holds numbers that cannot be"));
         }
-        let wheels = self.reference.as_ref().and_then(|reference| reference.wheels.as_ref());
-        if wheels.is_some_and(|law| !law.is_sound()) {
-            return Err(Error::in_file(path, "the law of the wheels holds numbers that cannot be"));
+        if self.reference.as_ref().is_some_and(|reference| !reference.is_sound()) {
+            return Err(Error::in_file(path, "the reference model holds numbers that cannot be"));
         }
         let motion = [("turn", &self.turn), ("forward", &self.forward), ("lateral", &self.lateral)];
         let sonar = [("echo_probability", &self.echo_probability), ("echo_value", &self.echo_value)];
         let motion = motion.map(|(name, l)| (name, l.as_ref().is_none_or(Learned::is_sound)));
         let sonar = sonar.map(|(name, l)| (name, l.as_ref().is_none_or(Learned::is_sound)));
-        let judged = self.reference.as_ref().and_then(|reference| reference.first_echo.as_ref());
-        if self.first_echo.iter().chain(judged).any(|law| !law.is_sound()) {
+        if self.first_echo.as_ref().is_some_and(|law| !law.is_sound()) {
             return Err(Error::in_file(path, "the first-echo law holds numbers that cannot be"));
         }
         self.check_further(path)?;
+        self.table_one.as_ref().map_or(Ok(()), |paper| paper.check(path))?;
         match motion.iter().chain(&sonar).find(|(_, sound)| !sound) {
             Some((name, _)) => Err(Error::in_file(path, format!("the {name} network holds numbers that cannot be"))),
             None => Ok(()),

@@ -340,6 +340,24 @@ fn invalid_simulator_files_are_refused() {
     );
     begins(&refused(&|text| text[..text.len() / 2].to_owned()), "sim.json:");
     begins(&refused(&|_| "[arena]\n".into()), "sim.json:1: is no simulator file of mindgap");
+    let changed = |place: &str, value: serde_json::Value| {
+        refused(&|text| {
+            let mut file: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+            *file.pointer_mut(place).unwrap_or_else(|| panic!("{place}")) = value.clone();
+            file.to_string()
+        })
+    };
+    begins(&changed("/robot/track_cm", 0.into()), "sim.json: robot: track_cm = 0 must lie between 0.001 and 100000");
+    begins(&changed("/robot/step_ms", 1e300.into()), "sim.json: robot: step_ms = 1");
+    let reversed = serde_json::json!([80.0, -80.0]);
+    begins(
+        &changed("/commands", reversed.clone()),
+        "sim.json: commands [80, -80] must be the smallest and the largest",
+    );
+    begins(
+        &changed("/reference/sonar/range_cm", reversed),
+        "sim.json: the reference model holds numbers that cannot be",
+    );
     let with = |effect: &str, ms: f64| {
         refused(&|text| {
             let mut file: serde_json::Value = serde_json::from_str(&text).expect("JSON");

@@ -171,10 +171,9 @@ impl Simulator {
 impl FurtherSensor {
     fn is_sound(&self) -> bool {
         let networks = [&self.echo_probability, &self.echo_value];
-        let judged = self.reference.as_ref().and_then(|reference| reference.first_echo.as_ref());
-        let laws = self.first_echo.iter().chain(judged);
         networks.iter().all(|l| l.as_ref().is_none_or(Learned::is_sound))
-            && laws.into_iter().all(FirstEchoLaw::is_sound)
+            && self.reference.as_ref().is_none_or(NominalModel::is_sound)
+            && self.first_echo.as_ref().is_none_or(FirstEchoLaw::is_sound)
     }
 }
 

@@ -34,3 +34,12 @@ pub struct NominalModel {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub familiar: Option<FamiliarPoses>,
 }
+
+impl NominalModel {
+    /// Returns whether its laws are those of a possible robot.
+    pub fn is_sound(&self) -> bool {
+        self.wheels.as_ref().is_none_or(WheelLaw::is_sound)
+            && self.sonar.as_ref().is_none_or(SonarModel::is_sound)
+            && self.first_echo.as_ref().is_none_or(FirstEchoLaw::is_sound)
+    }
+}

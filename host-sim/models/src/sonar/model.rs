@@ -46,6 +46,21 @@ pub struct SonarModel {
     pub range_cm: [f64; 2],
 }
 
+impl SonarModel {
+    /// Returns whether the parameters are those of a possible sensor.
+    pub fn is_sound(&self) -> bool {
+        let SonarModel { strength, mirror_loss, bias, log_scatter, constant: [p_constant, constant_cm], .. } = self;
+        let SonarModel { p_constant_given_none, p_short, p_dropout, fan_width, range_cm: [low_cm, high_cm], .. } = self;
+        let numbers = strength.iter().chain(mirror_loss).chain(bias).chain(log_scatter);
+        let numbers = numbers.chain([constant_cm, fan_width, low_cm, high_cm]);
+        let mut probabilities = [p_constant, p_constant_given_none, p_short, p_dropout].into_iter();
+        numbers.into_iter().all(|number| number.is_finite())
+            && probabilities.all(|p| (0.0..=1.0).contains(p))
+            && *fan_width > 0.0
+            && low_cm < high_cm
+    }
+}
+
 /// Width of an ideal ray relative to a usual beam.
 const RAY_WIDTH: f64 = 0.05;
 /// Log-odds that an ideal ray returns: practically certain.

@@ -64,7 +64,14 @@ pub fn targets_at(surfaces: &Surfaces, sensor: &Pose) -> Vec<Target> {
     found.extend(corners(surfaces, sensor));
     found.sort_by(|a, b| a.distance_cm.total_cmp(&b.distance_cm));
     let mut nearer = Nearer::default();
-    found.retain(|target| nearer.add(target));
+    // Visibility takes longest to compute, so it is the last question.
+    found.retain(|target| {
+        let is_heard = !nearer.masks(target) && target.is_visible(surfaces, sensor);
+        if is_heard {
+            nearer.add(target);
+        }
+        is_heard
+    });
     found.iter().map(|target| Target::new(target.distance_cm, target.off_axis_deg, target.kind)).collect()
 }
 
@@ -77,9 +84,16 @@ struct Found {
     distance_cm: f64,
     off_axis_deg: f64,
     kind: TargetKind,
+    /// Where it is, cm, unless a ray met it.
+    point_cm: Option<DVec2>,
 }
 
 impl Found {
+    /// Returns whether no wall hides it. Rays end at the walls that they meet.
+    fn is_visible(&self, surfaces: &Surfaces, sensor: &Pose) -> bool {
+        self.point_cm.is_none_or(|point_cm| surfaces.is_visible(sensor.position_cm, point_cm))
+    }
+
     /// Returns whether this part of a wall is nearer than another and certainly stronger.
     fn masks(&self, other: &Found) -> bool {
         let faces_more = match (self.kind.incidence_deg(), other.kind.incidence_deg()) {
@@ -107,25 +121,26 @@ impl Default for Nearer {
 }
 
 impl Nearer {
-    /// Adds a target that is not nearer than these unless one of these is certainly stronger. Returns whether it was added.
-    fn add(&mut self, target: &Found) -> bool {
+    /// Returns whether one of these is certainly stronger than a target that is not nearer.
+    fn masks(&self, target: &Found) -> bool {
         let off_axis_deg = target.off_axis_deg;
-        let is_new_least = |least_deg: &mut f64| {
-            let is_less = off_axis_deg < *least_deg;
-            *least_deg = least_deg.min(off_axis_deg);
-            is_less
-        };
         match target.kind {
-            TargetKind::Corner => is_new_least(&mut self.corner_deg),
-            TargetKind::Edge => is_new_least(&mut self.edge_deg),
+            TargetKind::Corner => self.corner_deg <= off_axis_deg,
+            TargetKind::Edge => self.edge_deg <= off_axis_deg,
             TargetKind::Ray { .. } | TargetKind::Foot => {
                 let incidence_deg = target.kind.incidence_deg().unwrap_or(0.0);
-                let is_masked =
-                    self.walls.iter().any(|[off, incidence]| *off <= off_axis_deg && *incidence <= incidence_deg);
-                if !is_masked {
-                    self.walls.push([off_axis_deg, incidence_deg]);
-                }
-                !is_masked
+                self.walls.iter().any(|[off, incidence]| *off <= off_axis_deg && *incidence <= incidence_deg)
+            }
+        }
+    }
+
+    /// Adds a target that none of these masks.
+    fn add(&mut self, target: &Found) {
+        match target.kind {
+            TargetKind::Corner => self.corner_deg = target.off_axis_deg,
+            TargetKind::Edge => self.edge_deg = target.off_axis_deg,
+            TargetKind::Ray { .. } | TargetKind::Foot => {
+                self.walls.push([target.off_axis_deg, target.kind.incidence_deg().unwrap_or(0.0)]);
             }
         }
     }
@@ -169,6 +184,7 @@ fn walls(surfaces: &Surfaces, sensor: &Pose) -> Vec<Found> {
             distance_cm: distance_cm.max(NEAREST_CM),
             off_axis_deg: off_axis_deg.abs(),
             kind: TargetKind::Ray { incidence_deg },
+            point_cm: None,
         };
         if along.replace(wall) != Some(wall) {
             start = found.len();
@@ -190,7 +206,7 @@ fn feet(surfaces: &Surfaces, sensor: &Pose) -> impl Iterator<Item = Found> {
     surfaces.walls.iter().filter_map(move |wall| {
         let foot_cm = wall.nearest(sensor.position_cm);
         let is_inside = || [wall.from_cm, wall.to_cm].iter().all(|end| end.distance(foot_cm) > END_CM);
-        point(surfaces, sensor, axis, foot_cm, || is_inside().then_some(TargetKind::Foot))
+        point(sensor, axis, foot_cm, || is_inside().then_some(TargetKind::Foot))
     })
 }
 
@@ -201,19 +217,12 @@ fn corners(surfaces: &Surfaces, sensor: &Pose) -> impl Iterator<Item = Found> {
         Side::Convex => Some(TargetKind::Edge),
         Side::Flat => None,
     };
-    let corner =
-        move |corner: &Corner| point(surfaces, sensor, axis, corner.at_cm, || kind(corner.side(sensor.position_cm)));
+    let corner = move |corner: &Corner| point(sensor, axis, corner.at_cm, || kind(corner.side(sensor.position_cm)));
     surfaces.corners.iter().filter_map(corner)
 }
 
-/// Returns a point as a target if it is one, within the beam and visible; most points are outside the beam.
-fn point(
-    surfaces: &Surfaces,
-    sensor: &Pose,
-    axis: DVec2,
-    at_cm: DVec2,
-    kind: impl FnOnce() -> Option<TargetKind>,
-) -> Option<Found> {
+/// Returns a point as a target if it is one and within the beam, which most points are not; it may be hidden.
+fn point(sensor: &Pose, axis: DVec2, at_cm: DVec2, kind: impl FnOnce() -> Option<TargetKind>) -> Option<Found> {
     let way = at_cm - sensor.position_cm;
     let distance_cm = way.length();
     if way.dot(axis) < WITHIN_COSINE * distance_cm {
@@ -221,8 +230,9 @@ fn point(
     }
     let kind = kind()?;
     let off_axis_deg = wrap_rad(libm::atan2(way.y, way.x) - sensor.heading_rad).abs().to_degrees();
-    let is_heard = distance_cm > 0.0 && off_axis_deg <= OUTERMOST_DEG && surfaces.is_visible(sensor.position_cm, at_cm);
-    is_heard.then(|| Found { distance_cm: distance_cm.max(NEAREST_CM), off_axis_deg, kind })
+    let is_within = distance_cm > 0.0 && off_axis_deg <= OUTERMOST_DEG;
+    let distance_cm = distance_cm.max(NEAREST_CM);
+    is_within.then_some(Found { distance_cm, off_axis_deg, kind, point_cm: Some(at_cm) })
 }
 
 #[cfg(test)]
@@ -254,12 +264,14 @@ mod tests {
                 distance_cm: met.distance_cm.max(NEAREST_CM),
                 off_axis_deg: met.off_axis_deg.abs(),
                 kind: TargetKind::Ray { incidence_deg: surfaces.incidence_deg(met.wall, axis_deg + met.off_axis_deg) },
+                point_cm: None,
             });
-            let all: Vec<Found> = rays.chain(feet(&surfaces, &sensor)).chain(corners(&surfaces, &sensor)).collect();
+            let points = feet(&surfaces, &sensor).chain(corners(&surfaces, &sensor));
+            let all: Vec<Found> = rays.chain(points.filter(|found| found.is_visible(&surfaces, &sensor))).collect();
             for found in &all {
                 let same = Target::new(found.distance_cm, found.off_axis_deg, found.kind);
                 let is_before = |target: &&Target| target.distance_cm <= found.distance_cm;
-                let as_found = |target: &Target| Found { distance_cm: target.distance_cm, off_axis_deg: target.off_axis_deg, kind: target.kind };
+                let as_found = |target: &Target| Found { distance_cm: target.distance_cm, off_axis_deg: target.off_axis_deg, kind: target.kind, point_cm: None };
                 prop_assert!(heard.iter().filter(is_before).any(|target| *target == same || masks(&as_found(target), &same)));
             }
             for target in &heard {
