@@ -73,7 +73,9 @@ impl StagingFolder {
     fn exchange_with(&self, moves: &mut Moves, is_own: impl Fn(&str) -> bool) -> io::Result<()> {
         let [ready, old] = [READY, OLD].map(|name| self.path.join(name));
         fs::create_dir(&old)?;
-        for name in names_in(&self.target)?.into_iter().filter(|name| name.to_str().is_some_and(&is_own)) {
+        // A folder is somebody's, whatever its name is.
+        let is_replaced = |name: &OsString| name.to_str().is_some_and(&is_own) && !self.target.join(name).is_dir();
+        for name in names_in(&self.target)?.into_iter().filter(is_replaced) {
             moves.rename(self.target.join(&name), old.join(&name))?;
         }
         moves.rename(self.new_folder(), ready.clone())?;
@@ -209,6 +211,7 @@ mod tests {
     fn failed_exchange_restores_the_target() {
         let target = tempfile::tempdir().expect("a temporary folder");
         fs::write(target.path().join("a"), "old").expect("a file");
+        fs::create_dir(target.path().join("a-folder")).expect("a folder");
         // A non-empty folder cannot be replaced by a file.
         fs::create_dir_all(target.path().join("z/theirs")).expect("a folder");
         let staging = StagingFolder::in_folder(target.path()).expect("a staging folder");
@@ -217,6 +220,20 @@ mod tests {
         }
         staging.exchange(|name| name == "a").expect_err("z is in the way");
         drop(staging);
-        assert_eq!(listing(target.path()), [("a".into(), "old".into()), ("z".into(), String::new())]);
+        let before = [("a", "old"), ("a-folder", ""), ("z", "")].map(|(name, text)| (name.into(), text.into()));
+        assert_eq!(listing(target.path()), before);
+    }
+
+    #[test]
+    fn folders_stay_whatever_their_names_are() {
+        let target = tempfile::tempdir().expect("a temporary folder");
+        fs::write(target.path().join("run-000.csv"), "old").expect("a file");
+        fs::create_dir(target.path().join("run-001.csv")).expect("a folder");
+        let staging = StagingFolder::in_folder(target.path()).expect("a staging folder");
+        fs::write(staging.new_folder().join("run-002.csv"), "new").expect("a file");
+        staging.exchange(|_| true).expect("exchanged");
+        drop(staging);
+        let after = [("run-001.csv", ""), ("run-002.csv", "new")].map(|(name, text)| (name.into(), text.into()));
+        assert_eq!(listing(target.path()), after);
     }
 }

@@ -35,6 +35,8 @@ const MAX_RAD_S: f64 = 1e3;
 const USUAL_GAP: f64 = 2.5;
 /// Time between poses by dead reckoning, ms.
 const RECKONED_MS: f64 = 50.0;
+/// Number of these times between two samples beyond which the motion between them is unknown: ten seconds.
+const MOST_BETWEEN: usize = 200;
 
 impl OwnMotion {
     /// Returns whether the wheels of both sides were counted.
@@ -49,9 +51,15 @@ impl OwnMotion {
 
     /// Returns the poses of a robot by dead reckoning from its rotation counters; with a gyro alone it turns in its place.
     pub fn dead_reckoned(&self, robot: &Robot) -> Vec<Frame> {
-        let ends = self.best().and_then(|best| best.samples.first().zip(best.samples.last()));
-        let Some(((first_ms, _), (last_ms, _))) = ends else { return Vec::new() };
-        let steps = ((last_ms - first_ms) / RECKONED_MS) as usize;
+        let samples = self.best().map_or(&[][..], |best| &best.samples);
+        let Some((first_ms, _)) = samples.first() else { return Vec::new() };
+        // A clock that was wrong for one sample must not make years of frames.
+        let mut steps: Vec<usize> = Vec::new();
+        for (t_ms, _) in samples {
+            let step = ((t_ms - first_ms) / RECKONED_MS) as usize;
+            let next = steps.last().map_or(0, |last| last + 1);
+            steps.extend(if step.saturating_sub(next) > MOST_BETWEEN { step..=step } else { next..=step });
+        }
         let (mut pose, mut before, mut turned_rad) = (Pose::new(0.0, 0.0, 0.0), None, 0.0);
         let frame = |step| {
             let t_ms = first_ms + RECKONED_MS * step as f64;
@@ -68,7 +76,7 @@ impl OwnMotion {
             pose = pose.compose(&Pose::new(cm * cos, cm * sin, rad));
             Some(Frame { t_ms, pose })
         };
-        (0..=steps).filter_map(frame).collect()
+        steps.into_iter().filter_map(frame).collect()
     }
 
     /// Returns a wheel if the wheels were counted, or else the gyro.
@@ -164,6 +172,15 @@ mod tests {
         let last = turning.dead_reckoned(&robot).pop().expect("frames");
         assert!((last.pose.heading_rad - turn_rad).abs() < 0.1 && last.pose.position_cm.length() == 0.0, "{last:?}");
         assert!(OwnMotion::default().dead_reckoned(&robot).is_empty());
+    }
+
+    #[test]
+    fn a_sample_of_another_year_makes_no_frames_until_then() {
+        const YEAR_MS: f64 = 365.0 * 86_400_000.0;
+        let turned = (0..100).map(|k| (YEAR_MS + 50.0 * f64::from(k), 0.1 * f64::from(k)));
+        let wheel = || vec![Series::of_wheel([(0.0, 0.0)].into_iter().chain(turned.clone()).collect(), false).0];
+        let motion = OwnMotion { wheels: [wheel(), wheel()], gyro: None };
+        assert!((100..=101).contains(&motion.dead_reckoned(&default_robot()).len()));
     }
 
     #[test]

@@ -160,7 +160,10 @@ fn the_paper_noise_option_changes_simulated_runs() {
 #[test]
 fn a_usage_error_exits_with_two_and_help_with_zero() {
     let sandbox = Sandbox::new();
-    for wrong in ["", "fly", "record", "record --out logs --runs none", "train logs", "record --out l --effect wings"] {
+    let offset = "import streams a.csv --robot robot.toml --out l --offset-ms nan";
+    for wrong in
+        ["", "fly", "record", "record --out logs --runs none", "train logs", "record --out l --effect wings", offset]
+    {
         assert_eq!(sandbox.call(wrong).code, 2, "mindgap {wrong}");
     }
     for right in ["--help", "--version", "record --help", "simulate --help"] {

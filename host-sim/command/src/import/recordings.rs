@@ -53,7 +53,7 @@ pub struct Streams {
     #[arg(long, value_name = "NAME")]
     body: Option<String>,
     /// Offset of the pose clock relative to the command clock, ms (default: estimated from the motion).
-    #[arg(long, value_name = "MS", allow_negative_numbers = true)]
+    #[arg(long, value_name = "MS", allow_negative_numbers = true, value_parser = finite)]
     offset_ms: Option<f64>,
     #[command(flatten)]
     target: Target,
@@ -339,4 +339,9 @@ fn of_clocks(clocks: &ClocksReport) -> String {
             1e6 * drift
         ),
     }
+}
+
+/// Parses a length of time of either sign, ms.
+fn finite(text: &str) -> std::result::Result<f64, String> {
+    text.parse().ok().filter(|ms: &f64| ms.is_finite()).ok_or_else(|| "is not a number".into())
 }
