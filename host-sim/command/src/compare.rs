@@ -142,11 +142,12 @@ impl Run for Compare {
         let mut patched = self.patch.patched(&models, found);
         patch_args::write(&models, &patched)?;
         let verification = self.verified(&models, &mut patched, &answered)?;
-        let baseline = &request.baseline(&answered.logs)?;
+        let baseline = || request.baseline(&answered.logs);
         if let Some(path) = &self.mcap {
-            files::write(path, layers::bag(found, baseline, &answered.logs, usable, &pairs))?;
+            files::write(path, layers::bag(found, &baseline()?, &answered.logs, usable, &pairs))?;
         }
         if let Some(path) = &self.html {
+            let baseline = &baseline()?;
             let (logs, catalogue, source) = (&answered.logs, request.method.catalogue, self.source());
             let verification = verification.as_deref().unwrap_or_default();
             let simulator = Some(usable);

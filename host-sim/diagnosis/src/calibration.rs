@@ -5,6 +5,8 @@ use std::sync::LazyLock;
 
 use serde::{Deserialize, Serialize};
 
+use super::shipped;
+
 /// All thresholds that decide between answers.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -61,9 +63,7 @@ pub const CALIBRATED_STEPS: f64 = 4800.0;
 /// The file written by `mindgap challenge calibrate`.
 pub const SHIPPED: &str = include_str!("calibration.toml");
 
-/// Failing to read this file is a fault of the program; a test reads it.
-static CALIBRATION: LazyLock<Calibration> =
-    LazyLock::new(|| toml::from_str(SHIPPED).expect("calibration.toml is as the command writes it"));
+static CALIBRATION: LazyLock<Calibration> = LazyLock::new(|| shipped::read(SHIPPED));
 
 impl Calibration {
     /// The calibration that diagnoses use.
@@ -107,8 +107,7 @@ impl Calibration {
 
     /// Returns the text of a calibration file, with the command that made it.
     pub fn to_text(&self, command: &str) -> String {
-        let figures = toml::to_string(self).expect("numbers can be written");
-        format!("# Made by: {command}\n{figures}")
+        shipped::to_text(self, command)
     }
 }
 
@@ -136,7 +135,7 @@ mod tests {
 
     #[test]
     fn shipped_file_equals_what_the_command_writes() {
-        let command = SHIPPED.lines().next().and_then(|line| line.strip_prefix("# Made by: ")).expect("a first line");
+        let command = shipped::command(SHIPPED);
         assert!(command.starts_with("mindgap challenge calibrate --cases "), "{command}");
         assert_eq!(Calibration::shipped().to_text(command), SHIPPED);
         assert_eq!(Calibration::shipped().judgement, Judgement::USUAL);

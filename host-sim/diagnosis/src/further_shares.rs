@@ -8,6 +8,8 @@ use std::sync::LazyLock;
 
 use serde::{Deserialize, Serialize};
 
+use super::shipped;
+
 /// Fractions of what effects explain in a channel that their model-form error could account for, by effect; only those that
 /// are larger than the [usual](super::calibration::Calibration::further_share).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -17,9 +19,7 @@ pub struct FurtherShares(BTreeMap<String, f64>);
 /// The file written by `mindgap challenge calibrate --further-shares`.
 const SHIPPED: &str = include_str!("further_shares.toml");
 
-/// Failing to read this file is a fault of the program; a test reads it.
-static FURTHER_SHARES: LazyLock<FurtherShares> =
-    LazyLock::new(|| toml::from_str(SHIPPED).expect("further_shares.toml is as the command writes it"));
+static FURTHER_SHARES: LazyLock<FurtherShares> = LazyLock::new(|| shipped::read(SHIPPED));
 
 impl FurtherShares {
     /// Makes a table from fractions by id.
@@ -34,8 +34,7 @@ impl FurtherShares {
 
     /// Returns the text of a file of fractions, with the command that made it.
     pub fn to_text(&self, command: &str) -> String {
-        let figures = toml::to_string(self).expect("numbers can be written");
-        format!("# Made by: {command}\n{figures}")
+        shipped::to_text(self, command)
     }
 
     /// Returns the largest fraction of these effects; zero if none has its own.
@@ -52,7 +51,7 @@ mod tests {
 
     #[test]
     fn shipped_file_equals_what_the_command_writes() {
-        let command = SHIPPED.lines().next().and_then(|line| line.strip_prefix("# Made by: ")).expect("a first line");
+        let command = shipped::command(SHIPPED);
         assert!(command.starts_with("mindgap challenge calibrate --cases "), "{command}");
         assert_eq!(FurtherShares::shipped().to_text(command), SHIPPED);
     }

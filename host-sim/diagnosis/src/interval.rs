@@ -11,6 +11,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value, json};
 
 use super::fit::Fitted;
+use super::shipped;
 use mindgap_logs::Robot;
 use mindgap_models::effects::Parameter;
 
@@ -28,9 +29,7 @@ pub struct FormErrors {
 /// The file written by `mindgap challenge score --form-errors`.
 const SHIPPED: &str = include_str!("form_errors.toml");
 
-/// Failing to read this file is a fault of the program; a test reads it.
-static FORM_ERRORS: LazyLock<FormErrors> =
-    LazyLock::new(|| toml::from_str(SHIPPED).expect("form_errors.toml is as the command writes it"));
+static FORM_ERRORS: LazyLock<FormErrors> = LazyLock::new(|| shipped::read(SHIPPED));
 
 impl FormErrors {
     /// The form errors that diagnoses use.
@@ -40,8 +39,7 @@ impl FormErrors {
 
     /// Returns the text of a file of form errors.
     pub fn to_text(&self) -> String {
-        let figures = toml::to_string(self).expect("numbers can be written");
-        format!("# Made by: mindgap challenge score FOLDER --form-errors FILE\n{figures}")
+        shipped::to_text(self, "mindgap challenge score FOLDER --form-errors FILE")
     }
 
     /// Returns the share for a number.

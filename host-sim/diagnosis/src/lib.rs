@@ -48,6 +48,7 @@ pub mod search;
 mod sensor_cache;
 pub mod sensors;
 pub mod sessions;
+mod shipped;
 pub mod slot;
 pub mod split;
 mod strength;

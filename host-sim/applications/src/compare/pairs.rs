@@ -32,6 +32,12 @@ pub fn pairs(simulator: &Logs, real: &Logs) -> Vec<Pair> {
     real.runs.iter().filter_map(|run| simulator.runs.iter().find_map(|other| pair(run, other))).collect()
 }
 
+/// Returns the simulator's recording of the commands of a robot's run.
+pub fn recorded<'a>(pairs: &[Pair], simulator: &'a Logs, real: &Run) -> Option<&'a Run> {
+    let pair = pairs.iter().find(|pair| pair.real == real.name)?;
+    simulator.runs.iter().find(|run| run.name == pair.simulated)
+}
+
 /// Returns what the simulator's recording of a pair shows at each row of the robot's run, moved to begin where the robot was first
 /// seen; empty moments where the recording has no row.
 pub fn alongside(real: &Run, simulated: &Run, step_ms: f64) -> Vec<Moment> {
@@ -52,13 +58,6 @@ pub fn alongside(real: &Run, simulated: &Run, step_ms: f64) -> Vec<Moment> {
 fn from_start(run: &Run) -> Vec<Option<Pose>> {
     let start = run.rows.iter().find_map(|row| row.pose);
     run.rows.iter().map(|row| Some(start?.relative(&row.pose?))).collect()
-}
-
-impl Pair {
-    /// Returns the simulator's run among its logs.
-    pub fn simulated_run<'a>(&self, simulator: &'a Logs) -> Option<&'a Run> {
-        simulator.runs.iter().find(|run| run.name == self.simulated)
-    }
 }
 
 fn pair(real: &Run, simulated: &Run) -> Option<Pair> {

@@ -8,6 +8,6 @@ pub struct Entry {
     pub what: &'static str,
     /// What imitates it; may be empty.
     pub imitated_by: &'static str,
-    /// How to check it; may be empty for a term.
+    /// How to check it.
     pub check: &'static str,
 }

@@ -9,7 +9,7 @@ pub const TERMS: &[Entry] = &[
         what: "The unit of log-likelihood: one nat more means that the logs are 2.7 times as likely. Three nats are strong \
                evidence, 30 are beyond doubt.",
         imitated_by: "",
-        check: "",
+        check: "Divide by the number of steps to compare logs of different lengths.",
     },
     Entry {
         id: "kinematic",

@@ -47,7 +47,7 @@ pub const VERDICTS: &[Entry] = &[
         id: "infeasible",
         what: "The loop found no controller that reaches the target on any plausible robot.",
         imitated_by: "",
-        check: "Look at the scene: is the target within reach of six tuples, and does the sensor see something where the \
-                robot has to turn?",
+        check: "See whether the target is within reach of six tuples, and whether the sensor sees something where the robot \
+                has to turn.",
     },
 ];

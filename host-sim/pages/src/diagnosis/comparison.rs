@@ -3,7 +3,7 @@
 use maud::{Markup, html};
 
 use crate::document::{Section, open_table};
-use mindgap_applications::compare::pairs::Pair;
+use mindgap_applications::compare::pairs::{self, Pair};
 use mindgap_applications::compare::verify::Verification;
 use mindgap_logs::{Logs, Run};
 use mindgap_patch::patch::{NotPatched, Patch};
@@ -26,7 +26,7 @@ pub struct Comparison<'a> {
 impl<'a> Comparison<'a> {
     /// Returns the simulator's recording of the commands of a robot's run.
     pub fn recorded(&self, run: &Run) -> Option<&'a Run> {
-        self.pairs.iter().find(|pair| pair.real == run.name)?.simulated_run(self.simulator?)
+        pairs::recorded(self.pairs, self.simulator?, run)
     }
 }
 
